@@ -115,7 +115,7 @@ struct UserPolyhedron : btConvexHullShape {
   UserPolyhedron() { m_shapeType = CUSTOM_POLYHEDRAL_SHAPE_TYPE; }
 };
 struct UserConcave : btConcaveShape {
-  const btConcaveShape* other = nullptr;  // whose triangles it reports
+  const btConcaveShape* other = nullptr;  // the shape whose triangles this one reports
   btVector3 one{1, 1, 1};
   UserConcave() { m_shapeType = CUSTOM_CONCAVE_SHAPE_TYPE; }
   void getAabb(const btTransform& X, btVector3& low, btVector3& high) const override {

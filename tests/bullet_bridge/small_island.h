@@ -21,7 +21,7 @@ namespace vps::bullet::test_island {
 
 /// Greatest relative rounding error of a number in Bullet's precision.
 constexpr double kRounding = std::numeric_limits<btScalar>::epsilon() / 2;
-constexpr double kDt_s = btScalar(1e-3);  // as the engine holds it
+constexpr double kDt_s = btScalar(1e-3);  // rounded as the engine stores it
 
 /// A contact as given to the solver, rounded to Bullet's precision. Solvers compute with doubles, so they
 /// must solve the rounded problem accurately.
@@ -135,7 +135,7 @@ class SmallIsland {
       const double excess_m_s = v.dot(c.n_W) - leastNormalVelocity(c);
       EXPECT_GE(solved_c.p_n, 0) << k;
       EXPECT_GE(excess_m_s, -near_m_s) << k;
-      // For a contact that pushes, in units of the velocity that its impulse causes.
+      // The excess is zero if the contact pushes; the impulse counts as the velocity that it causes.
       EXPECT_LE(std::min(excess_m_s, solved_c.p_n * solved_c.normal.W), near_m_s) << k;
       EXPECT_LE(p_t.norm(), c.mu * solved_c.p_n * (1 + 1e-6) + 1e-15) << k;
       // btPlaneSpace1() computes the tangents in Bullet's precision, with at most six rounding operations.
@@ -171,7 +171,7 @@ class SmallIsland {
 };
 
 /// Three bodies of different masses with two contacts each, the first with the floor, normals in any
-/// direction. The state of rest obeys all of them, so a solution exists.
+/// direction. The state of rest obeys all contacts, so a solution exists.
 inline void makeRandom(SmallIsland& made, std::uint64_t seed, double mu) {
   test::Random random(seed);
   for (int k = 0; k < 3; ++k)

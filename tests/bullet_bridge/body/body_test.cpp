@@ -89,7 +89,7 @@ TEST(MakeBody, KeepsToItsBudgetAndSaysWhatItChose) {
   setLogLevel(LogLevel::Warning);
   EXPECT_NE(said.find("200 x 200 x 200 mm"), std::string::npos) << said;
   EXPECT_NE(said.find("points (budget 20000)"), std::string::npos) << said;
-  // Edges have points of their own.
+  // The shell has points on the edges in addition to those on the faces.
   EXPECT_GT(large.model->shell->size(), 10'000u);
   EXPECT_LT(large.model->shell->size(), 30'000u);
   EXPECT_LT(large.model->map->memoryBytes(), 64u << 20);

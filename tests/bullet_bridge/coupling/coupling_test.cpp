@@ -147,7 +147,7 @@ TEST_P(CouplingWithSolver, LimitsTheSpringAndKeepsItsDirection) {
   coupling.setTarget(targetAt(Pose::translation(0.1 * direction)));  // 200 N without a limit
   world.step();
   EXPECT_LE((coupling.wrench().f - 5 * direction).norm(), kIsDouble ? 1e-9 : 1e-5);
-  // The part has the velocity that this force gives it.
+  // The part has the velocity that the coupling's force gives it.
   EXPECT_LE((fromBt(part.getLinearVelocity()) - 5 * direction / 0.05 * 1e-3).norm(),
             kIsDouble ? 1e-12 : 1e-7);
   world.world->removeConstraint(&coupling);
@@ -228,11 +228,11 @@ INSTANTIATE_TEST_SUITE_P(Each, CouplingWithSolver,
                          testing::Values(SolverKind::Stock, SolverKind::Constraint, SolverKind::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 
-// This pull moves the block's free path by 3 mm in a step of 1 ms, farther than the range of its map.
+// The coupling's pull moves the block's free path by 3 mm in a step of 1 ms, farther than a map's range.
 TEST(Coupling, PullsAPartOntoAWallThatItWouldTunnelThroughInAStep) {
   for (const SolverKind solver : {SolverKind::Constraint, SolverKind::Penalty}) {
     World world(solver);
-    const test::Built plate = test::plate(), box = test::steelBox();  // 10 mm thick, both
+    const test::Built plate = test::plate(), box = test::steelBox();  // both are 10 mm thick
     world.add(plate, Pose::translation(Vec3(0, 0, -5e-3)), true);
     btRigidBody& part = world.add(box, Pose::translation(Vec3(0, 0, 6e-3)));
     CouplingGains gains = gainsOf(1e6, box.frame.mass_kg);

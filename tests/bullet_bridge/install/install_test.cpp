@@ -54,7 +54,7 @@ TEST(Install, ASecondCallReplacesTheSettings) {
   for (int m = 0; m < world.dispatcher.getNumManifolds(); ++m)
     contacts += world.dispatcher.getManifoldByIndexInternal(m)->getNumContacts();
   EXPECT_GE(contacts, 8);
-  EXPECT_LT(contacts, 32);  // checks of steps add some; without the call there are 32 or more contacts
+  EXPECT_LT(contacts, 32);  // checks of steps add some; without the second install() there are 32 or more
 }
 
 TEST(Install, ABodyPlacedIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
@@ -71,7 +71,7 @@ TEST(Install, ABodyPlacedIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
   const Stats stats = startAt(0.010 - kOverlap_m);
   const std::string words = testing::internal::GetCapturedStderr();
   EXPECT_NE(words.find("begin at least 1 mm inside each other"), std::string::npos) << words;
-  EXPECT_NE(words.find("(0, 0, 0.009) m"), std::string::npos) << words;  // where one of the bodies is
+  EXPECT_NE(words.find("(0, 0, 0.009) m"), std::string::npos) << words;  // the position of one body
   EXPECT_EQ(stats.overlapping_starts, 1u);
   EXPECT_NEAR(stats.deepest_start_m, kOverlap_m,
               1e-7);  // the distance of faces is exact except for float rounding
@@ -121,7 +121,7 @@ TEST(Install, ExaminesEveryPointOfALargeFace) {
 }
 
 TEST(Install, ALimitOnCandidatesIsAppliedAndCounted) {
-  // The result must not depend on the larger buffers of the test above.
+  // The result must not depend on the larger buffers of the test ExaminesEveryPointOfALargeFace.
   btStaticPlaneShape plane(btVector3(0, 0, 1), toBt(0.005));
   for (btCollisionShape* under : std::initializer_list<btCollisionShape*>{&plane, cube().shape.get()}) {
     Settings settings;
@@ -165,7 +165,7 @@ TEST(Install, CompoundsOfShapesCollide) {
 }
 
 TEST(Install, ManyPairsSurviveBulletsAlgorithmPool) {
-  // A pool of two: the third algorithm is allocated on the heap.
+  // A pool for two algorithms: the third algorithm is allocated on the heap.
   btDefaultCollisionConstructionInfo small;
   small.m_defaultMaxCollisionAlgorithmPoolSize = 2;
   btDefaultCollisionConfiguration config(small);
@@ -218,7 +218,7 @@ struct Tables : btCollisionDispatcher {
 TEST(Uninstall, RestoresTheDispatcher) {
   btDefaultCollisionConfiguration config;
   btCollisionDispatcher dispatcher(&config);
-  btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher);  // for GImpact and all types, including ours
+  btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher);  // pairs GImpact with all types, also Shape's
   const auto before = Tables::of(dispatcher);
   install(dispatcher);
   EXPECT_NE(Tables::of(dispatcher), before);
@@ -380,7 +380,7 @@ TEST(TuneWorld, KeepsAPartAwakeThatSlidesAtATenthOfAMetreASecond) {
     world.step(3000);
     const std::string said = testing::internal::GetCapturedStderr();
     EXPECT_EQ(said.find("fall asleep") == std::string::npos, is_tuned) << said;
-    // Without tuneWorld, Bullet stops it after two seconds.
+    // Without tuneWorld, Bullet stops the body after two seconds.
     EXPECT_NEAR(body.getWorldTransform().getOrigin().x(), is_tuned ? 0.3 : 0.2, 2e-3);
   }
 }

@@ -57,7 +57,7 @@ TEST(Log, WithoutAHookWritesToStderr) {
 
 TEST(Log, LimitsTheRateAndCountsWhatItLeavesOut) {
   Kept kept;
-  // The messages of this test take far less than two seconds, so at most three limits of them pass.
+  // The messages of this test take far less than two seconds, so at most 3 * kLogLimit messages pass.
   for (int i = 0; i < 10 * kLogLimit; ++i) report(LogLevel::Warning, "again");
   EXPECT_GE(kept.messages.size(), 1u);
   EXPECT_LE(kept.messages.size(), 3u * kLogLimit);
@@ -80,7 +80,7 @@ TEST(Log, ReceivesWhatAStepFindsWrong) {
 }
 
 TEST(ForgottenInstall, IsSaidOnceByTheShape) {
-  // Runs in a separate process, since other tests of this one have called install().
+  // Runs in a separate process, since other tests of this program have called install().
   const auto forget = [] {
     int count = 0;
     setLogHook([&](LogLevel level, const std::string& message) {

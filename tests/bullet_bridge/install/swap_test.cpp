@@ -44,7 +44,7 @@ TEST(Swap, AShapeByASmallerOneWhileItSlidesOnAnother) {
 }
 
 TEST(Swap, APartByABoxAndBack) {
-  // Also on a plane, since Bullet has a special algorithm for a plane and a box.
+  // The swap is also tested on a plane, since Bullet has a special algorithm for a plane and a box.
   btStaticPlaneShape plane(btVector3(0, 0, 1), toBt(0.005));
   btBoxShape box(btVector3(toBt(0.005), toBt(0.005), toBt(0.005)));
   for (const bool is_plane : {false, true}) {

@@ -48,7 +48,7 @@ void addFloor(World& world, bool is_tiled) {
 
 struct Landing {
   double sideways_m_s = 0;  ///< greatest change of the horizontal velocity
-  double turn_m_s = 0;  ///< greatest speed, at the body's reach, by its angular momentum about the vertical
+  double turn_m_s = 0;      ///< greatest speed of the farthest vertex by the spin about the vertical
 };
 
 Landing land(const Built& part, bool is_tiled, double speed_m_s, double sideways_m_s, unsigned seed) {
@@ -93,8 +93,8 @@ int wrong(bool is_tiled) {
       for (const double sideways_m_s : {0.0, 0.5})
         for (unsigned seed = 1; seed <= 4; ++seed) {
           const Landing landing = land(bodies()[k], is_tiled, speed_m_s, sideways_m_s, seed);
-          // Rows are right to half the rest gap over a step of 1 ms, 50 um/s, of which a body that ends flush
-          // on the floor may lean over its length.
+          // Rows are accurate to half the rest gap in a step of 1 ms (50 um/s), and a body that ends flush on
+          // the floor may lean by this amount over its length.
           const double bound_m_s = 1e-3 * std::max(speed_m_s, sideways_m_s) + 50e-6;
           if (landing.sideways_m_s > bound_m_s || landing.turn_m_s > bound_m_s) {
             ++count;
@@ -112,8 +112,8 @@ TEST(Landing, OnALevelFloorIsVertical) {
   EXPECT_LE(wrong(false), 1);
 }
 
-// A corner that lands beside a seam at 20 mm/s or more may be stopped by the rim of the next plate, since the
-// rim is found together with the floor that the first solution lacks, and its contact remains. 14 of 72
+// A corner that lands next to a seam at 20 mm/s or more may be stopped by the rim of the next plate, since
+// the rim is found together with the floor that the first solution lacks, and its contact remains. 14 of 72
 // landings are wrong.
 TEST(Landing, BesideASeamIsVerticalInMostCases) {
   EXPECT_LE(wrong(true), test::kIsDouble ? 14 : 15);

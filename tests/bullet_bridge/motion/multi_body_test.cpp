@@ -121,7 +121,7 @@ TEST(LinkOfAChain, StopsAtAPlateAtAnySpeed) {
                     btVector3(toBt(0.015), 0, 0), btVector3(0, 0, 0), true);
     btMultiBodyLinkCollider& part = multi.collide(body, 1, cube());
     multi.start(body);
-    // Raised by 30 degrees; a positive turn about y lowers it.
+    // The arm starts raised by 30 degrees; a positive turn about y lowers it.
     body.setJointPos(0, toBt(-M_PI / 6));
     body.setJointVel(0, toBt(spin_rad_s));
     MultiWorld::place(body);
@@ -130,7 +130,8 @@ TEST(LinkOfAChain, StopsAtAPlateAtAnySpeed) {
       multi.step(1);
       lowest_m = std::min<double>(lowest_m, part.getWorldTransform().getOrigin().z());
     }
-    // As above; on its arc the part's corner meets the plate first, so that its centre is higher.
+    // The tolerance is the solver's residual; on its arc the part's corner meets the plate first, so that its
+    // centre is higher.
     EXPECT_GT(lowest_m, 0.010 - 50e-6) << spin_rad_s;
     EXPECT_NEAR(part.getWorldTransform().getOrigin().z(), 0.010, 50e-6) << spin_rad_s;
   }

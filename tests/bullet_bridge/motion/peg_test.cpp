@@ -23,8 +23,8 @@ constexpr double kRadius_m = 0.005, kDepth_m = 0.015, kLength_m = 0.030;
 // Facets are 5 mm (1 - cos(pi / 256)) = 0.4 um inside their circle: much less than a tenth of the clearance.
 constexpr int kSegments = 256;
 constexpr double kDeepest_m = 3e-6;
-// Penalty contact yields: the rim of a tilted peg carries 10 N on 0.9 mm^2 of points, which at 1e12 N/m^3 and
-// half of it for each side sinks by 11 um, and so does the seat.
+// Penalty contact yields: the rim of a tilted peg carries 10 N on 0.9 mm^2 of points and sinks by 11 um at
+// 1e12 N/m^3, half of which is for each side; the seat sinks by 11 um too.
 constexpr double kSoft_m = 12e-6;
 
 // 10 x 30 mm with a 1 mm chamfer at the lower end (z = 0).
@@ -126,13 +126,13 @@ TEST_P(PegInBore, DroppedItSeats) {
   EXPECT_NEAR(later.p.z(), -kDepth_m, 3e-6);
   // In single precision the stock solver, which starts friction from zero in each step, lets the part creep
   // by the rounding of dt g, at most 2e-5 m/s, for two seconds. Penalty contact creeps too (4.7e-6 m/s
-  // measured), since bends do not include the rounding of a pose.
+  // measured), since the bends of bristles do not include the rounding of a pose.
   const bool creeps = GetParam().solver != SolverKind::Constraint && sizeof(btScalar) == 4;
   // In single precision a pose is rounded by up to 3.7 nm at 62 mm in each of 2000 steps, which friction does
   // not undo. Measured: 1.04 um.
   const double rounding_m = sizeof(btScalar) == 4 ? 2000 * 3.7e-9 : 0;
   EXPECT_LE((later.p - rest.p).norm(), creeps ? 4e-5 : 1e-6 + rounding_m);
-  // A rigid contact takes back the rounding of a pose in each step: 3.7 nm at up to 62 mm, in 1 ms.
+  // A rigid contact corrects the rounding of a pose in each step: 3.7 nm at up to 62 mm, in 1 ms.
   const double rounding_m_s = sizeof(btScalar) == 4 ? 2 * 3.7e-6 : 0;
   EXPECT_LE(speed_m_s, creeps ? 2e-5 : 1e-6 + rounding_m_s);
   EXPECT_LE(deepest_m, kDeepest_m);
@@ -150,7 +150,8 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   world.world->addConstraint(&coupling, true);
   CouplingState target;
   target.is_coupled = true;
-  // Pushed down at 30 mm/s with an error of 0.1 mm and 0.5 degrees, to 5 mm below the seat: 10 N.
+  // The coupling's target moves down at 30 mm/s with an error of 0.1 mm and 0.5 degrees, to 5 mm below the
+  // seat, which gives a force of 10 N.
   const Mat3 R = rotationFromVector(Vec3(0.006, 0.006, 0));
   const double end_z_m = -kDepth_m - 5e-3;
   for (int i = 0; i < 1200; ++i) {
@@ -176,8 +177,9 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   EXPECT_LE(tilt_rad, (1.2 * GetParam().clearance_m + soft_m) / (kDepth_m - 1.5e-3));
   EXPECT_NEAR(rest.p.z(), -kDepth_m + (kRadius_m - 1e-3) * tilt_rad, 3e-6 + 0.5 * soft_m);
   EXPECT_LE(deepest_m, kDeepest_m + soft_m);
-  // A part keeps its contacts' planes until it has moved by 1 um (kSamePlace_m), and is then put right by one
-  // step: by at most what the plane of the next facet, turned by 2 pi / 256, differs after such a way. 25 nm.
+  // A part keeps its contacts' planes until it has moved by 1 um (kSamePlace_m), and is then corrected by one
+  // step: by at most the difference to the plane of the next facet, turned by 2 pi / 256, after 1 um of
+  // motion. This difference is 25 nm.
   const double kept_m = GetParam().solver == SolverKind::Constraint ? 1e-6 * 2 * M_PI / kSegments : 0;
   EXPECT_LE(speed_m_s, std::max(1e-5, kept_m / 1e-3));
   EXPECT_NEAR(coupling.wrench().f.z(), -10, 0.1);  // 1 %

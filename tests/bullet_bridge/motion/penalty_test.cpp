@@ -103,8 +103,9 @@ TEST(Penalty, ABlockRidesOnAMovingPlateWithoutFurtherQueries) {
   const std::size_t updates = stats(world.dispatcher).pair_updates;
   const Pose after = ride(1000);
   EXPECT_EQ(stats(world.dispatcher).pair_updates, updates);
-  // Bullet computes the plate's speed as a difference of positions: rounding, for 1000 steps. If the penalty
-  // points did not move with the plate, they would be 100 mm off and the block would fall over.
+  // Bullet computes the plate's speed as a difference of positions, so the tolerance is the rounding of 1000
+  // steps. If the penalty points did not move with the plate, they would be 100 mm off and the block would
+  // fall over.
   EXPECT_LE((after.p - before.p).norm(), 1e-12);
   EXPECT_LE((after.R - before.R).norm(), 1e-12);
   below.setMotionState(nullptr);

@@ -83,7 +83,7 @@ TEST_P(RestWithSolver, ABoxOfAMeshThatFacesInFallsOntoAPlateAndRests) {
   World world(GetParam());
   const Built box = test::build(inside_out, 7850, 0.5e-3, 1e-3), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
-  btRigidBody& body = world.add(box, Pose::translation(Vec3(1e-3, 2e-3, 0.006)));  // 1 mm above it
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(1e-3, 2e-3, 0.006)));  // 1 mm above
   const Rest rest = watch(world, body, Pose::translation(Vec3(1e-3, 2e-3, 0.005)) * box.frame.X_PB);
   EXPECT_LE(rest.sink_m, 1e-6);
   EXPECT_LE(rest.drift_m, 1e-6);
@@ -156,7 +156,8 @@ TEST_P(RestWithSolver, BallsAndCapsulesSupportAPlateAtTheirRadius) {
 }
 
 TEST_P(RestWithSolver, SticksBelowTheFrictionAngleAndSlidesAbove) {
-  // The stock solver's friction directions follow the slip, so its pyramid is exact here too.
+  // The stock solver's friction directions follow the slip, so its friction pyramid is exact in this test
+  // too.
   for (const double mu : {0.15, 0.4})
     for (const double ratio : {0.97, 1.03}) {
       World world(GetParam());
@@ -176,8 +177,9 @@ TEST_P(RestWithSolver, SticksBelowTheFrictionAngleAndSlidesAbove) {
         // a = g (sin - mu cos). The box has slid for 0.2 s, then slides for 0.1 s more: a (0.3^2 - 0.2^2)
         // / 2.
         const double a = kGravity * (std::sin(angle_rad) - mu * std::cos(angle_rad));
-        // The acceleration is 3 % of the friction's. The stock solver in single precision has an error of 0.2
-        // % of the friction (measured; allowed: 0.3 %), all others less than a tenth of it.
+        // The acceleration of the box is 3 % of the deceleration by friction. The stock solver in single
+        // precision has an error of 0.2 % of the friction (measured; allowed: 0.3 %), all others less than a
+        // tenth of it.
         const bool is_rough = GetParam() == SolverKind::Stock && !kIsDouble;
         EXPECT_NEAR(moved_m, a * 0.05 / 2, (is_rough ? 0.1 : 0.03) * a * 0.05 / 2) << mu;
       }
@@ -286,7 +288,7 @@ TEST_P(RestWithSolver, TwoFreeBodiesKeepTheirMomentum) {
       added += Iw - rotationFromVector(1e-3 * w).transpose() * Iw;
     }
   }
-  EXPECT_GT(a.getLinearVelocity().length(), 0.1);  // they have collided
+  EXPECT_GT(a.getLinearVelocity().length(), 0.1);  // the bodies have collided
   const Vec3 P = m * fromBt(a.getLinearVelocity() + b.getLinearVelocity());
   EXPECT_LE((P - Vec3(0, 0, -m)).norm(), (kIsDouble ? 1e-9 : 1e-5) * m);
   // bullet::Solver applies both forces in one line; the stock solver applies them at points up to a step's
@@ -324,7 +326,7 @@ struct Contained {
 
 TEST_P(RestWithSolver, AContainedPartKeepsAFinitePose) {
   // With almost no push (20 nm a step) the part does not move, so that the second step uses the stored
-  // contacts. None of their normals is in the field.
+  // contacts. The field has no normal at the stored contacts.
   World world(GetParam());
   Contained contained;
   btRigidBody& body = contained.addTo(world);
@@ -485,9 +487,9 @@ TEST(Slide, AnisotropicFrictionIsThatOfBullet) {
       }
 }
 
-// Their edges lie flush, and each point on one is as near to the side faces as to the face below it.
+// The cubes' edges lie flush, and each point on an edge is as near to the side faces as to the face below.
 TEST(Rest, EqualCubesStayExactlyAboveEachOther) {
-  const double error_m = kIsDouble ? 1e-6 : 1e-5;  // the latter is assumed
+  const double error_m = kIsDouble ? 1e-6 : 1e-5;  // 1e-5 is assumed
   for (const SolverKind solver : {SolverKind::Stock, SolverKind::Constraint})
     for (const double voxel_m : {0.25e-3, 0.5e-3}) {
       const Built cube = test::build(makeBox(Vec3::Constant(0.01)), 7850, voxel_m, 2 * voxel_m);

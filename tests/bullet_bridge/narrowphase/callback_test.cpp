@@ -22,7 +22,7 @@ const Built& cube() {
 /// Counts the calls of each callback, and records their order.
 struct Calls {
   int added = 0, processed = 0, started = 0, ended = 0, destroyed = 0, given = 0;
-  std::string order;  ///< first letters, repeated calls once
+  std::string order;  ///< first letters of the callbacks, repeated calls once
   btScalar friction = -1;
   bool kept_data = true;
 
@@ -101,7 +101,7 @@ class Callbacks : public testing::Test {
     if (is_lifted) {
       world.world->setGravity(btVector3(0, 0, 0));
       body.setGravity(btVector3(0, 0, 0));
-      body.setLinearVelocity(btVector3(0, 0, 1));  // 10 mm in in ten steps it is still near the other cube
+      body.setLinearVelocity(btVector3(0, 0, 1));  // 10 mm in ten steps: the cubes are still near
       world.step(10);
       body.setWorldTransform(toBt(Pose::translation(Vec3(0, 0, 0.1))));
       world.step(30);
@@ -109,7 +109,7 @@ class Callbacks : public testing::Test {
       world.world->removeRigidBody(&body);
     }
     const Calls calls = calls_;
-    if (!is_lifted) world.world->addRigidBody(&body);  // for the world's destructor
+    if (!is_lifted) world.world->addRigidBody(&body);  // the world's destructor removes the body
     return calls;
   }
   Calls calls_;
@@ -123,7 +123,8 @@ TEST_F(Callbacks, AreCalledForAPartAsForABox) {
     EXPECT_EQ(part.started, box.started);
     EXPECT_EQ(box.ended, 1);
     EXPECT_EQ(part.ended, box.ended);
-    // A part has up to 64 contacts where a box has four: each is added once, and then four in each step.
+    // A part has up to 64 contacts where a box has four: each of these contacts is added once, and then four
+    // contacts are added in each step.
     EXPECT_GE(box.added, 3 * kSteps);
     EXPECT_GE(part.added, 3 * kSteps);
     EXPECT_LE(part.added, box.added + 3 * 64);
@@ -153,7 +154,7 @@ TEST_F(Callbacks, ACallbacksFrictionStaysWithItsPoint) {
     body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
     world.step(30);
     // In free motion the body would move by a dt^2 n (n + 1) / 2 in n steps. Bullet's solver in single
-    // precision lets it slip for a step.
+    // precision lets the cube slip for a step.
     const double x_m = body.getWorldTransform().getOrigin().x();
     if (friction > 0)
       EXPECT_LT(x_m, 12e-6);  // two steps

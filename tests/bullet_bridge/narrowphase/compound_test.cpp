@@ -162,8 +162,8 @@ TEST(Compound, AsksBulletsCallbackForEachPairOfChildren) {
   EXPECT_GT(fall.deepest_m, 0.5);
 }
 
-// Compounds of Bullet's own shapes keep their contact, with the same bits, and the functions registered
-// before.
+// Compounds of Bullet's own shapes keep their bit-identical contact and the functions that were registered
+// before install().
 TEST(Compound, WithoutPartsIsLeftToBullet) {
   btBoxShape box(halfSize(Vec3::Constant(0.02)));
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);

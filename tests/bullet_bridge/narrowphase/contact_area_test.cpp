@@ -80,7 +80,7 @@ TEST(ContactArea, MergedPointsKeepTheirMoments) {
   EXPECT_LE((sum.areaCenter_W() * sum.area_m2 - want.first).norm(), 1e-9 * want.area_m2 * kSize_m);
   const Mat3 second =
       sum.area_m2 * (sum.area_spread.cast<double>() + sum.areaCenter_W() * sum.areaCenter_W().transpose());
-  EXPECT_LE((second - want.second).norm(), 1e-5 * want.second.norm());  // its spread is in floats
+  EXPECT_LE((second - want.second).norm(), 1e-5 * want.second.norm());  // area_spread is stored in floats
 }
 
 // Two faces with opposite normals: the area of a dropped point goes to a contact of the same face.

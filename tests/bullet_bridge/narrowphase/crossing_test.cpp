@@ -63,7 +63,7 @@ TEST(Crossing, OfFourEdgesIsFoundWithItsGap) {
   seen.m_closestDistanceThreshold = toBt(20e-6);
   scene.world.world->contactPairTest(scene.ground, scene.body, seen);
   EXPECT_EQ(seen.count, 4);
-  // A float resolves a height of 1 mm to 1e-10 m, and this is a difference of several.
+  // A float resolves a height of 1 mm to 1e-10 m, and the distance is a difference of several heights.
   EXPECT_NEAR(seen.least_m, 12e-6, 1e-9);
   EXPECT_NEAR(seen.most_m, 12e-6, 1e-9);
 }

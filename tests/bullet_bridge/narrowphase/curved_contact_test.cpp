@@ -71,7 +71,7 @@ struct Truth {
 struct Found {
   int moved = 0;
   double off_m = 0, gap_off_m = 0, tilt_rad = 0;  ///< greatest errors of the moved points
-  double least_gap_m = 1e300;                     ///< of all points
+  double least_gap_m = 1e300;                     ///< least gap of all points
 };
 
 // Checks all points of both shells within one spacing of the place where the faces touch.
@@ -209,7 +209,7 @@ TEST(CurvedContact, ASmallBallLiesStill) {
       world.step();
       fastest_m_s = std::max<double>(fastest_m_s, std::abs(body.getLinearVelocity().z()));
     }
-    // It may roll. Gravity adds 1e-2 m/s in a step.
+    // The ball may roll sideways. Gravity adds 1e-2 m/s in a step.
     EXPECT_LE(fastest_m_s, 1e-3) << radius_m;
     EXPECT_GE(body.getWorldTransform().getOrigin().z(), 5e-3 + radius_m - 0.13e-3) << radius_m;
   }

@@ -121,7 +121,7 @@ TEST(DistanceQuery, IsTheLeastBetweenConvexBodies) {
     world.world->contactPairTest(&far, &part, near);
     std::vector<Vec3> placed;
     for (const Vec3& p : corners) placed.push_back(X_WH * p);
-    // The last turn of the iteration gains less than 0.1 nm; positions in single precision round to 4 nm.
+    // The last iteration gains less than 0.1 nm; positions in single precision round to 4 nm.
     EXPECT_NEAR(near.distance_m, gapAlong(near.n, placed, cube().mesh.vertices), 1e-6) << i;
   }
 }

@@ -96,8 +96,8 @@ class MissedContact : public testing::TestWithParam<SolverKind> {};
 INSTANTIATE_TEST_SUITE_P(Each, MissedContact, testing::Values(SolverKind::Stock, SolverKind::Constraint),
                          [](const auto& info) { return test::nameOf(info.param); });
 
-// At the lowest corner, the face beside an edge may slope away. An earlier version then took the corner to be
-// beside the contact.
+// At the lowest corner, the face beside an edge may slope away; an earlier version then assumed that the
+// corner lay next to the contact.
 TEST_P(MissedContact, OfALeaningTetrahedronsCornerWithAFloor) {
   const Mesh tetrahedron = centered(cornerTetrahedron(20e-3));
   std::mt19937 random(1);
@@ -135,8 +135,8 @@ TEST(MissedContact, OfARodThatTurnsAboutItsOtherEnd) {
   EXPECT_LE(scene.deepestOf(3), kBound_m);
 }
 
-// Two blocks rest near each other, and a third block throws one at the other. No contact between them was
-// predicted.
+// Two blocks rest near each other, and a third block throws one at the other, although no contact between the
+// two was predicted.
 TEST(MissedContact, OfABlockThatAnotherOneThrows) {
   Measured scene;
   scene.world.world->setGravity({0, 0, 0});
@@ -214,9 +214,9 @@ Mesh pocketed(double a_m, double b_m, double deep_m) {
   return mesh;
 }
 
-// Forces would move a light free key by a millimetre in one step. In an earlier version its edges met the
-// pocket's edges at the end of that motion, and contacts of up to 0.7 mm depth pushed a key aside that did
-// not overlap.
+// Forces would move a light free key by a millimetre in one step. In an earlier version the key's edges met
+// the pocket's edges at the end of that motion, and contacts of up to 0.7 mm depth pushed a key aside that
+// did not overlap.
 TEST_P(MissedContact, OfAKeyThatStrongForcesTurnInItsPocket) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);

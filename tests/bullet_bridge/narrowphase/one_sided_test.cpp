@@ -130,8 +130,8 @@ double deepestOnItsWayIn_m(Sides sides) {
 
 TEST(OneSided, AChamferSlidesOverAnEdgeWithBoundedDepth) {
   // The bore's edge touches the peg's chamfer before the chamfer's own edge touches the mouth; only the
-  // bore's points would find that. When the chamfer's edge touches, the bore's edge is inside the chamfer by
-  // the difference of the two slopes over the overlap.
+  // bore's points would find this first contact. When the chamfer's edge touches, the bore's edge is inside
+  // the chamfer by the difference of the two slopes over the overlap.
   const double over_m = kPeg_m + kAside_m - kBore_m;
   const double bound_m = over_m * (1 - std::tan(std::numbers::pi / 6)) * std::cos(std::numbers::pi / 6);
   EXPECT_LT(deepestOnItsWayIn_m(Sides::One), bound_m);

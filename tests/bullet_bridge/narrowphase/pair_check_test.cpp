@@ -97,8 +97,8 @@ TEST(PairCheck, MissesNothingInAStepThatStaysFree) {
   }
 }
 
-// A motion is not checked again if it ends within a twentieth of the rest gap of a clear one. If it ends
-// farther away, it is checked.
+// A motion is not checked again if it ends within a twentieth of the rest gap of a clear one. A motion that
+// ends farther away is checked.
 TEST(PairCheck, AClearWayHoldsForWaysThatEndBesideIt) {
   if (!test::kIsDouble) GTEST_SKIP() << "poses are coarser than a nanometre";
   constexpr double kGap_m = 100e-6, kMissed_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;
@@ -188,8 +188,8 @@ TEST(PairCheck, TheFreeShareEndsWhereACornerMeetsTheFace) {
   }
 }
 
-/// A ball in a bore. The step moves it along the wall to a pose with a given overlap. The points of both
-/// parts are 1.3 mm apart.
+/// A ball in a bore. The step moves the ball along the wall to a pose with a given overlap. The points of
+/// both parts are 1.3 mm apart.
 struct BallInBore : CheckedPair {
   static constexpr double kBall_m = 4e-3, kBore_m = 5e-3;
   const Built& built = sharedBall();
@@ -254,7 +254,7 @@ TEST(PairCheck, SaysWhatItMissesAlsoWithoutRoom) {
   EXPECT_TRUE(was_full);
 }
 
-// A ball flies into the wall. At the end of the free share it is at most 10 um deep, and not much less.
+// A ball flies into the wall. At the end of the free share the ball is at most 10 um deep, and not much less.
 TEST(PairCheck, TheFreeShareOfPointsEndsWhereTheyAreDeep) {
   test::Random random(4);
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m, allowed_m = 10e-6;

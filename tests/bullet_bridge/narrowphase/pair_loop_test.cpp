@@ -94,7 +94,7 @@ double deepest_m(World& world, const Built& fixed, const Built& thrown, const Po
 }
 
 // Corners and edges that turn at up to 50 rad/s and fly at up to 0.8 m/s meet faces and edges. One body
-// slides over the end of an edge in a step that bends by 32 um. Since the next edge is found there, that body
+// slides over the end of an edge in a step that bends by 32 um; since the next edge is found there, that body
 // later ends a step 15 to 16 um deep, for an unknown reason.
 TEST_P(PairLoop, FindsTheCornersAndEdgesOfAThrownBody) {
   std::mt19937 random(5);
@@ -169,8 +169,8 @@ double distanceLessGap_m(World& world, const Vec3& angular_factor = Vec3::Ones()
   return least_m;
 }
 
-// Bullet's solvers get distances that are reduced by the rest gap, which bullet::Solver reads separately.
-// This also holds in the first step, and for bodies that bullet::Solver passes to Bullet's solver.
+// Bullet's solvers get distances that are reduced by the rest gap, which bullet::Solver reads separately. The
+// reduction is the same in the first step, and for bodies that bullet::Solver passes to Bullet's solver.
 TEST_P(PairLoop, GivesBulletsSolversTheRestGap) {
   constexpr double kRest_m = FeatureMotion::kRest_m;
   StockWorld stock(GetParam());

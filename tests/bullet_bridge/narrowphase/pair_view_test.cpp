@@ -78,7 +78,7 @@ TEST(PairView, WithoutMeshABodysBoxIsNotKnown) {
   EXPECT_GT(PairView(&other, &same).leastDistance_m(), 0.9);
 }
 
-// A prediction that turns bodies about the world's origin looks for this one 5 mm away.
+// A prediction that turns bodies about the world's origin looks for the spinning body 5 mm away.
 TEST(PairView, ABodyThatSpinsFarFromTheOriginTurnsAboutItsCentre) {
   Shape shape(withMesh()), other(withMesh());
   btRigidBody spinning(

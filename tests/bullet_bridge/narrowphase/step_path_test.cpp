@@ -88,7 +88,7 @@ TEST(StepPath, AnImpactActsWhereItLands) {
 }
 
 /// A corner lands within the step after another corner carried the weight. The effective lever lies between
-/// both.
+/// the levers of both corners.
 TEST(StepPath, ACornerThatLandsSlowlyDoesNoWork) {
   Scene scene;
   scene.body.applyCentralForce(btVector3(0, 0, btScalar(-9.81 * kMass_kg)));

@@ -222,7 +222,7 @@ TEST(SurfaceMaterial, WhatIsNoMaterialIsRefusedInWords) {
   EXPECT_EQ(refused(2.0, 1.0, {}), "");
 }
 
-// As after mesh repair has moved a surface.
+// The surfaces are moved away from the shell's points, as mesh repair may move a surface.
 TEST(SurfaceMaterial, APointBesideItsSurfaceBelongsToTheNearest) {
   const TwoPlates plates({SurfaceMaterial{}, SurfaceMaterial{}}, false);
   ShapeModels models = plates.shape->models();

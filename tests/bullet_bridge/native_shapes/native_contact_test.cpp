@@ -99,7 +99,7 @@ TEST(OpenMesh, APartThatOverlapsItReturnsToItsSide) {
 }
 
 TEST(OpenMesh, EndsAtItsBorder) {
-  // 10 um outside the border, with its lower rim 5 um below the plane: it falls past.
+  // The cube is 10 um outside the border, with its lower rim 5 um below the plane, and falls past the floor.
   const double x_m = kWide_m + kHalf_m + 10e-6, z_m = kHalf_m - 5e-6;
   OnAFloor scene(cube(), Pose::translation(Vec3(x_m, 0, z_m)));
   scene.world.step(20);
@@ -181,7 +181,7 @@ TEST(RoundNativeShapes, APinInABoreHasContactAllAround) {
 }
 
 TEST(Heightfield, HasItsHeightAndNormalOnASlope) {
-  // z = x / 4, exact on its triangles.
+  // The terrain is z = x / 4, which its triangles represent exactly.
   std::vector<float> heights;
   for (int y = 0; y < 21; ++y)
     for (int x = 0; x < 21; ++x) heights.push_back(static_cast<float>(0.25 * 0.004 * (x - 10)));

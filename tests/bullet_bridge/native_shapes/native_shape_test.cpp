@@ -225,7 +225,7 @@ const std::vector<Row>& rows() {
        }},
       {"CompoundOfCompounds",
        [](Ground& g) {
-         // A hull below one half, in a nested compound; a box below the other.
+         // Below one half of the surface is a hull in a nested compound, and below the other half a box.
          auto& inner = g.keep<btCompoundShape>();
          inner.addChildShape(toBt(Pose::translation(Vec3(0.01, 0, 0))), &slabHull(g, 0.25));
          auto& box = g.keep<btBoxShape>(at(0.01, 0.01, 0.01));

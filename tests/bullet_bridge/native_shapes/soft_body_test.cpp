@@ -45,7 +45,7 @@ struct SoftWorld {
     soft.emplace_back(body);
     body->getCollisionShape()->setMargin(toBt(kMargin_m));
     body->m_cfg.piterations = 10;
-    body->setTotalMass(toBt(mass_kg), false);  // from faces it would give a mass to fixed corners
+    body->setTotalMass(toBt(mass_kg), false);  // with `true`, fixed corners would get a mass
     world.addSoftBody(body);
     return *body;
   }

@@ -91,8 +91,8 @@ void expectSame(const char* what, double ball_m, const Cast& cast) {
     for (int i = 0; i < kCasts; ++i) {
       met += bvh.fractions[i] < 1 ? 1 : 0;
       // Bullet ends a sweep up to 10 mm before it touches (its squared tolerance is 1e-4 m2), at triangles
-      // that the ball may never reach. A part has fewer of these, but never ends later than at the surface:
-      // facets lie up to 2 um inside of the sphere.
+      // that the ball may never reach. A sweep at a part ends early at fewer triangles, and never later than
+      // at the surface: facets lie up to 2 um inside of the sphere.
       ASSERT_GE(part.fractions[i], bvh.fractions[i] - 1e-6) << what << ' ' << i;
       ASSERT_LE(part.fractions[i], part.exact[i] + 1e-3) << what << ' ' << i;
       if (ball_m == 0) {

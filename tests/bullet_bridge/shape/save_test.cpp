@@ -107,7 +107,7 @@ TEST(SavedWorld, AScaledShapeKeepsItsSize) {
   importer.deleteAllData();
 }
 
-/// A load of the only body of a world with it.
+/// Saves a world with its only body, and loads both.
 class LoadedBody : public testing::Test {
  protected:
   btRigidBody& saveAndLoad(World& world) {
@@ -141,7 +141,7 @@ TEST_F(LoadedBody, HasItsOwnInertiaThresholdsAndMotion) {
 }
 
 TEST_F(LoadedBody, HasThePartsOfItsCompoundAsParts) {
-  // A tube twice and a box, one of them in a compound within.
+  // A compound of a tube, a box and an inner compound that has the same tube.
   btBoxShape box(btVector3(toBt(0.004), toBt(0.004), toBt(0.004)));
   btCompoundShape inner, outer;
   inner.addChildShape(btTransform::getIdentity(), tube().shape.get());

@@ -148,7 +148,8 @@ TEST(Shape, ScaledItEqualsThePartOfThatSize) {
   ASSERT_EQ(a.shell->size(), b.shell->size());
   double area_m2 = 0;
   for (std::size_t i = 0; i < a.shell->size(); ++i) {
-    // On the surface, and at the surface of the larger map; the field's error depends on the voxel.
+    // Each scaled point lies on the exact surface of the larger part, whose field has an error that depends
+    // on the voxel.
     EXPECT_LE(std::abs(b.surfaces[0].distance->signedDistance(a.shell->points[i])), 1e-9);
     area_m2 += a.shell->area_m2[i];
   }
@@ -257,8 +258,8 @@ TEST(Shape, GivesTheNormalsOfTheCylinderBehindItsFacets) {
     const bool is_end = shell.points[id].z() < 1e-9 || shell.points[id].z() > kHeight_m - 1e-9;
     const Vec3 radial(shell.points[id].x(), shell.points[id].y(), 0);
     const Vec3 inward = is_end ? shell.inward[id] : Vec3(-radial.normalized());
-    // Interpolated between the normals of two corners, linearly along the chord as the point: exact except
-    // for float corners.
+    // The normal is interpolated between the normals of two corners, linearly along the chord like the point,
+    // so it is exact except for the corners' rounding to floats.
     EXPECT_LE((peg.shape->smoothInward(id) - inward).norm(), 3e-7) << shell.points[id].transpose();
     facets_off_rad = std::max(facets_off_rad, (shell.inward[id] - inward).norm());
   }

@@ -99,7 +99,7 @@ TEST(ShapeInWorld, AGhostObjectDetectsItWithoutForce) {
   for (int i = 0; i < 150; ++i) {
     world.step();
     if (ghost.getNumOverlappingObjects() == 1 && ghost.getOverlappingObject(0) == &body) ++steps_seen;
-    // As the manual describes for contacts of ghost objects.
+    // Reads the ghost object's contacts as Bullet's manual describes.
     btManifoldArray manifolds;
     world.dispatcher.dispatchAllCollisionPairs(ghost.getOverlappingPairCache(),
                                                world.world->getDispatchInfo(), &world.dispatcher);
@@ -112,7 +112,7 @@ TEST(ShapeInWorld, AGhostObjectDetectsItWithoutForce) {
         break;
       }
   }
-  // It falls freely through 20 mm of overlap, from 2 mm above: from 20 ms to 67 ms.
+  // The body falls freely through 20 mm of overlap, from 2 mm above: from 20 ms to 67 ms.
   EXPECT_GT(steps_seen, 40);
   EXPECT_GE(steps_touched, 46);
   EXPECT_LE(steps_touched, 50);
@@ -151,7 +151,7 @@ TEST(ShapeInWorld, ABodyCanBeRemovedWhileOthersTouchIt) {
   world.world->removeRigidBody(&middle);
   world.step(100);
   EXPECT_NEAR(top.getWorldTransform().getOrigin().z(), 0.010, 1e-6);
-  world.world->addRigidBody(&middle);  // where top is now
+  world.world->addRigidBody(&middle);  // at the present place of `top`
   world.step(5);
   EXPECT_TRUE(fromBt(middle.getWorldTransform()).isFinite());
 }

@@ -114,7 +114,7 @@ TEST(Sheet, EndsAtItsBorder) {
 }
 
 TEST(Sheet, ItsBorderIsARim) {
-  // The ball's middle and the cube's faces meet the floor's end edge on.
+  // The middle of the ball, and the faces of the cube, meet the end of the floor edge-on.
   for (const bool is_cube : {false, true}) {
     Fall fall(is_cube, Vec3(0.1 + kHalf_m + 1e-3, 0, 0), 0);
     fall.falling->setLinearVelocity(btVector3(toBt(-0.2), 0, 0));

@@ -110,7 +110,7 @@ TEST(EarlyEnd, OnlyWhatHangsTogetherEndsEarly) {
   EXPECT_EQ(made.island.bodies[2].way_share, 1);
 }
 
-// Two bodies, each with its own floor. The overlap of the second one is found only after the first one has
+// Two bodies, each with its own floor; the overlap of the second body is found only after the first body has
 // stopped.
 TEST(EarlyEnd, IsLookedAtAgain) {
   SmallIsland made;
@@ -154,7 +154,7 @@ TEST(EarlyEnd, ABodyIsNotStoppedForWhatComesToIt) {
   EXPECT_GT(made.island.bodies[0].way_share, 0);
 }
 
-// The same test in a world, where a pair that always reports a missed contact uses up the rounds.
+// An early end in a whole world, where a pair that always reports a missed contact uses up the rounds.
 TEST(EarlyEnd, ASolversStepEndsWherePointsAreNotDeep) {
   static const test::Built box = test::steelBox(), plate = test::plate();
   test::World scene;

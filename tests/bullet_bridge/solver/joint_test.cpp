@@ -70,7 +70,7 @@ TEST_P(JointsWithSolver, APendulumSwingsByTheFormula) {
   const double m = box.frame.mass_kg, l = 0.01, I = m / 12 * (0.02 * 0.02 + 0.01 * 0.01) + m * l * l;
   const double speed_rad_s = m * kGravity * l / I * kSteps * 1e-3;
   const double turned_rad = 0.5 * speed_rad_s * kSteps * 1e-3;
-  // Cosine of the angle, and joint errors that are corrected by 0.2 in a step.
+  // Tolerance: the cosine of the angle, and joint errors, of which a fifth is corrected in each step.
   EXPECT_NEAR(body.getAngularVelocity().length(), speed_rad_s,
               (turned_rad * turned_rad + 1e-3) * speed_rad_s);
   const Pose X_WP = test::partPose(body, box);
@@ -206,12 +206,12 @@ TEST_P(JointsWithSolver, AJointBreaksAboveItsBreakingImpulse) {
   world.world->removeConstraint(&joint);
 }
 
-// A free body would turn away from the axis. The hinge holds it with the torque w x I w.
+// A free body would turn away from the axis; the hinge holds the body with the torque w x I w.
 //
 // A step takes the pose through a quaternion and back, which tilts it by some eight roundings of epsilon / 2.
-// The joint takes back the share erp of the tilt in each step, so that tilts add up to 1 / erp of one step's,
-// and the speed with which they are taken back is one step's tilt in the time of a step. Measured with
-// floats: a third.
+// The joint corrects the share erp of the tilt in each step, so that tilts add up to 1 / erp of one step's
+// tilt, and the speed of the correction is one step's tilt in the time of a step. With floats a third of this
+// speed was measured.
 TEST(Joints, ABodyThatSpinsAboutAnAxisThatIsNotPrincipalStaysOnItsHinge) {
   constexpr double kSpin_rad_s = 50, kStep_s = 1e-3;
   constexpr double kOff_rad_s =

@@ -85,7 +85,7 @@ TEST(ImpactProjection, IsTheNearestVelocityWithoutApproach) {
     for (std::size_t i = 0; i < b.rows.size(); ++i) {
       EXPECT_GE(p[i], 0);
       EXPECT_GE(b.rows[i].velocity(v), -1e-9) << seed;
-      EXPECT_LE(p[i] * b.rows[i].velocity(v), 1e-9) << seed;  // an impulse only where they touch
+      EXPECT_LE(p[i] * b.rows[i].velocity(v), 1e-9) << seed;  // no impulse where bodies separate
     }
   }
 }
@@ -133,7 +133,8 @@ TEST(Reflections, ALightBodyBetweenHeavyOnesPassesAllEnergyOn) {
   EXPECT_LT(after.v[0][3], -0.99);
 }
 
-// Thousands of impacts, or more than the work budget allows; the light body then acts as a massless spacer.
+// There are thousands of impacts, or more than the work budget allows; the light body then acts as a massless
+// spacer.
 TEST(Reflections, AnyLightBodyBetweenOthersPassesAllEnergyOn) {
   for (const double ratio : {1e-3, 1e-5, 1e-6, 1e-7, 1e-9}) {
     const Bodies b = row(3, 1, 1, {1, ratio, 1});

@@ -73,7 +73,8 @@ TEST(Turn, BodiesInContactThatTurnTooFarAreReportedOnceWithTheRateThatHoldsThem)
     SpinningDisc spinning(turn_rad / 1e-3, true);
     spinning.world.step(5);
     EXPECT_EQ(messages.count(kInContact), turn_rad > kContactTurn_rad ? 1 : 0);
-    // The float nearest to 101.3 rad/s is 3e-8 above it, so that 1013 steps turn it by more than the limit.
+    // The float nearest to 101.3 rad/s is 3e-8 above it, so that in 1013 steps a second the disc turns by
+    // more than the limit.
     const char* const rate = test::kIsDouble ? "1013 steps a second or more" : "1014 steps a second or more";
     EXPECT_EQ(messages.count(rate), turn_rad > kContactTurn_rad ? 1 : 0);
   }
@@ -120,7 +121,7 @@ TEST(Turn, AStepIsDividedBeforeABodyLands) {
   for (const auto& [gap_m, expected] : {std::pair(0.9e-3, 11), std::pair(1.1e-3, 2)}) {
     SpinningDisc spinning(1047, true);
     spinning.body->translate(btVector3(0, 0, toBt(gap_m)));
-    spinning.body->setLinearVelocity(btVector3(0, 0, -1));  // 1.00 mm and 10 um by its weight
+    spinning.body->setLinearVelocity(btVector3(0, 0, -1));  // moves by 1.00 mm, and by 10 um more by weight
     spinning.world.world->performDiscreteCollisionDetection();
     EXPECT_EQ(substepsFor(*spinning.world.world, 1e-3, 1000), expected) << gap_m;
   }

@@ -126,7 +126,7 @@ TEST(EdgeCrossing, IsTheSameWithThePartsExchanged) {
         return r.edge[0] == f.edge[1] && r.edge[1] == f.edge[0];
       });
       ASSERT_NE(same, back.end());
-      EXPECT_NEAR(same->gap_m, f.gap_m, 1e3 * kRounding);  // a sine of 0.087 costs a hundredfold
+      EXPECT_NEAR(same->gap_m, f.gap_m, 1e3 * kRounding);  // at a sine of 0.087 errors are a hundredfold
       EXPECT_LT((X_ab.R * same->n + f.n).norm(), 1e3 * kRounding);
     }
   }
@@ -204,7 +204,7 @@ TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
       overlaps |= pierces(X_01.inverse() * s.from, X_01.inverse() * s.to, size1);
     for (const EdgeSegment& s : edges1.segments()) overlaps |= pierces(X_01 * s.from, X_01 * s.to, size0);
     if (overlaps) continue;
-    double nearest = 1e300;  // to the true distance
+    double nearest = 1e300;  // least difference from the true distance
     for (const EdgeCrossing& c : crossings(edges0, edges1, X_01, 0.5)) {
       if (c.gap_m < 0) continue;
       nearest = std::min(nearest, std::abs(c.gap_m - edge));
@@ -316,7 +316,7 @@ TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
   for (int i = 0; i < 300; ++i) {
     const Pose X = poseAt(i);
     turn_rad += i % 100 == 50 ? 1.0 : i < 150 ? 1e-3 : 2e-2;
-    // With the step known, and with a step of zero.
+    // The range has the next step, or a step of zero.
     const CrossingRange range{i % 7 == 0 ? 120e-6 : 30e-6, 60e-6,
                               i % 3 == 0 || i % 100 == 50 ? X : poseAt(i + 1)};
     std::vector<EdgeCrossing> with, without;

@@ -215,14 +215,14 @@ TEST(FeatureMotion, AnEdgeMeetsAnEdge) {
                    {10e-3, 4e-3, -4e-3}, {-10e-3, -4e-3, -4e-3}, {10e-3, -4e-3, -4e-3}};
   roof.triangles = {{0, 1, 3}, {0, 3, 2}, {0, 5, 1}, {0, 4, 5}, {2, 3, 5}, {2, 5, 4}, {0, 2, 4}, {1, 5, 3}};
   const Body below(roof), above(roof);
-  // Upside down, and turned by a quarter about z.
+  // The upper roof is upside down, and turned by a quarter about z.
   const Mat3 R =
       rotationFromVector(Vec3(0, 0, std::numbers::pi / 2)) * rotationFromVector(Vec3(std::numbers::pi, 0, 0));
   const Pose start(R, Vec3(1e-3, 2e-3, 20e-6)), end(R, Vec3(1e-3, 2e-3, -30e-6));
   const auto found = check(below, above, start, end);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].kind, FeatureContact::Kind::EdgeOnEdge);
-  EXPECT_LE((found[0].normal_0(start) - Vec3(0, 0, -1)).norm(), 1e-9);  // from the upper one to the lower
+  EXPECT_LE((found[0].normal_0(start) - Vec3(0, 0, -1)).norm(), 1e-9);  // from the upper roof to the lower
   EXPECT_NEAR(found[0].gap_m(end), -30e-6, 1e-12);
 }
 
@@ -243,7 +243,7 @@ TEST(FeatureMotion, EdgesThatPassEachOtherTouchWhereTheyAreNearest) {
       if (c.kind != FeatureContact::Kind::EdgeOnEdge) continue;
       ++found;
       EXPECT_LE(c.normal_0(start).head<2>().norm(), 1e-6) << i;
-      EXPECT_NEAR(c.gap_m(end), gap_m, 4e-9) << i;  // that times the way, and rounding
+      EXPECT_NEAR(c.gap_m(end), gap_m, 4e-9) << i;  // 1e-6 times the path of 3 mm, and rounding
     }
   }
   EXPECT_GE(found, 50);
@@ -264,8 +264,8 @@ TEST(FeatureMotion, SlidingAtTheRestGapMeetsNothing) {
 }
 
 // A block that comes from beyond an edge, within half of the rest gap above the face behind the edge, slides
-// onto that face: a plane along the line from its corner to the edge would stop it. A lower block hits the
-// side.
+// onto that face: a plane along the line from its corner to the edge would stop it. A block that is lower
+// than the face hits the side of the floor.
 TEST(FeatureMotion, ACornerThatPassesAnEdgeFlushMeetsTheFaceBehindIt) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3))), block(box(Vec3(4e-3, 3e-3, 2e-3)));
   const Mat3 R = rotationFromVector(Vec3(0, 0, 0.3));
@@ -288,7 +288,7 @@ TEST(FeatureMotion, ACornerThatPassesAnEdgeFlushMeetsTheFaceBehindIt) {
 
 // The edge of a wedge that leans across the rim of a hole slides straight along the rim: the rim curves away
 // to the side, and the wedge's edge enters it by d^2 / 2r, after it has passed the ends of several of the
-// rim's edges. Contacts with the passed edges hold it on straight lines, which the rim leaves.
+// rim's edges. Contacts with the passed edges hold the wedge's edge on straight lines, which the rim leaves.
 TEST(FeatureMotion, AnEdgeThatSlidesAlongAFineRimMeetsTheEdgeWhereItEnds) {
   constexpr double kRadius_m = 4e-3, kHeight_m = 2e-3;
   const double lean = std::sqrt(0.5);  // the edge leans by 45 degrees in the plane of the hole's axis
@@ -428,8 +428,8 @@ TEST(FeatureMotion, RingsThatSlideOverTheJointsOfTheirSectionsAreNotMissed) {
 }
 
 // Rims of pipes of many sides cross, and slide along each other over several corners in a step with a
-// rotation. On the outside corners are hills, and in the bore they are valleys. Edges that a contact holds at
-// the end of the step dip below each other during the motion by as much as it bends.
+// rotation. On the outside of a pipe, corners are hills, and in its bore they are valleys. Edges that a
+// contact holds at the end of the step dip below each other during the motion by as much as it bends.
 TEST(FeatureMotion, NoRimThatSlidesOverTheCornersOfAnotherIsMissed) {
   std::mt19937 random(9);
   const auto draw = [&](double from, double to) { return std::uniform_real_distribution(from, to)(random); };
@@ -488,7 +488,7 @@ TEST(FeatureMotion, ListsKeptFromStepToStepChangeNoAnswer) {
     kept.check(a.features, b.features, at, next, false, found);
     const auto fresh = check(a, b, at, next);
     ASSERT_EQ(found.size(), fresh.size()) << i;
-    double sum_kept = 0, sum_fresh = 0;  // in another order
+    double sum_kept = 0, sum_fresh = 0;  // contacts may be in another order
     for (const FeatureContact& c : found) sum_kept = std::max(sum_kept, c.share);
     for (const FeatureContact& c : fresh) sum_fresh = std::max(sum_fresh, c.share);
     EXPECT_EQ(sum_kept, sum_fresh) << i;

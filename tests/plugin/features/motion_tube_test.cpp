@@ -70,7 +70,7 @@ TEST(MotionTube, PointsOfMotionsThatItHoldsStayWithinItsMargin) {
     }
   }
   EXPECT_GT(held, 500);
-  EXPECT_GT(fullest, 0.5);  // else it would be too wide
+  EXPECT_GT(fullest, 0.5);  // otherwise the tube would be too wide
 }
 
 TEST(MotionTube, DoesNotHoldWhatLeavesIt) {
@@ -84,7 +84,8 @@ TEST(MotionTube, DoesNotHoldWhatLeavesIt) {
   EXPECT_FALSE(tube.holds(Pose::translation({20e-3, 10e-3, 0})));
 }
 
-// A nut moves in steps of 40 um. Each is expected to fall by another 10 um, which the thread prevents.
+// A nut moves in steps of 40 um. In each step the nut is expected to fall by another 10 um, which the thread
+// prevents.
 TEST(MotionTube, FollowsTheMotionThatThePartsHad) {
   const Ball ball{Vec3::Zero(), 10e-3};
   const auto at = [](double way_m, double fall_m) { return Pose::translation({20e-3, way_m, -fall_m}); };

@@ -39,7 +39,7 @@ TEST(TouchCone, HoldsEveryDirectionThatAllRaysAllow) {
     const double spread = wide(random);
     std::vector<Vec3> rays;
     for (int i = 0; i < 3 + trial % 6; ++i) rays.push_back((axis + spread * direction(random)).normalized());
-    if (trial % 3 == 0) rays.push_back(-rays[0]);  // an edge goes straight on
+    if (trial % 3 == 0) rays.push_back(-rays[0]);  // a straight edge: two opposite rays
     const auto cone = touchCone(rays, kSinTouch);
     if (!cone) ++empty;
     if (cone && cone->angle_rad < 1.5) ++narrow;
@@ -123,8 +123,8 @@ TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
     Pairs pairs;
     for (const TouchPair& pair : found) pairs.emplace(pair.corner, pair.facet);
     EXPECT_EQ(pairs.size(), found.size());
-    // All pairs that can touch after a turn by less than the slack, and no more than the tolerance of a
-    // product adds.
+    // The search finds all pairs that can touch after a turn by less than the slack, and no more pairs than
+    // the tolerance of a product adds.
     EXPECT_TRUE(
         holds(searchAll(a, b, X, margin_m, Near::ToItsBoxAndPlane, Mat3::Identity(), slack_rad), pairs));
     for (int k = 0; k < 3; ++k) {

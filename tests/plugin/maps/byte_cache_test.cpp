@@ -76,7 +76,7 @@ TEST_F(ByteCacheTest, TheLimitRemovesWhatWasNotUsedForLongest) {
     fs::last_write_time(small.fileOf(name),
                         fs::file_time_type::clock::now() - std::chrono::hours('d' - *name));
   }
-  EXPECT_TRUE(small.find("a"));  // now the last that was used
+  EXPECT_TRUE(small.find("a"));  // `a` is now the entry used last
   small.keep("d", std::string(900, 'x'));
   EXPECT_TRUE(small.find("a"));
   EXPECT_FALSE(small.find("b"));

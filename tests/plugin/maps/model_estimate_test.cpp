@@ -29,7 +29,7 @@ std::vector<Case> cases() {
 
 // The bounds contain two extremes. The estimate for the box, whose faces lie along the grid and meet the
 // fewest bricks, is 1.34 times the built size. For the tube, whose rims have more points than their length
-// suggests, it is 0.82 of the cropped points.
+// suggests, the estimate is 0.82 of the cropped points.
 TEST(ModelEstimate, WholeModelsTakeAboutWhatIsEstimated) {
   for (const Case& part : cases()) {
     const ModelEstimate estimate(part.mesh, {}, {});

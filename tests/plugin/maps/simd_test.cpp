@@ -197,16 +197,16 @@ TEST(SimdKernels, ReadingsAreTheTrilinearFormula) {
     const auto batch = trial.read(Simd::Best);
     for (int i = 0; i < kBatch; ++i) {
       const ShellBlock& block = trial.blocks[static_cast<std::size_t>(i)];
-      // Positions are rounded to whole steps. Errors before that, in floats: the matrix and the point are
-      // rounded, then three products and three sums of numbers up to the block's radius and a cell, each to
-      // 2^-24 of itself.
+      // Positions are rounded to whole steps. Errors in floats before positions are rounded: the matrix and
+      // the point are rounded, then three products and three sums of numbers up to the block's radius and a
+      // cell, each to 2^-24 of itself.
       const double radius = block.radius_m / trial.voxel_m;
       const double off_steps = 0.5 + (3 * 3 * radius + 3 * (8 + 2 * radius)) * kSteps * std::exp2(-24);
       // Errors in doubles: the centre, computed from the far corner of the pose.
       const double c = Vec3(block.center[0], block.center[1], block.center[2]).norm() / trial.voxel_m;
       const double off_voxels = off_steps / kSteps + 1e-15 * (c + 1000);
-      // Neighbouring nodes differ by at most twice the band along each axis; then there are sums of floats
-      // below it.
+      // Neighbouring nodes differ by at most twice the band along each axis; sums of floats below the band
+      // add their rounding.
       const double tol = 3 * 2 * kFullBand * off_voxels + 12 * kFullBand * std::exp2(-24);
       float least = kFullBand;
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -241,8 +241,8 @@ TEST(SimdKernels, ALeafThatReachesBeyondTheNeighbourCellsIsRead) {
   std::mt19937 random(1);
   const auto batch = std::make_unique<ReadBatch>();
   for (double radius = 0.5; radius < 15; radius += 0.25) {
-    // The block lies two cells beside the lone one; sixteen points on the near side are up to the radius
-    // nearer.
+    // The block lies two cells beside the only cell with nodes; sixteen points on the near side are up to the
+    // radius nearer.
     const Vec3 center(23.9, 36, 36);
     ShellBlock block = randomBlock(random, center, radius, kLanes);
     for (int i = 0; i < kLanes; ++i) {
@@ -263,7 +263,7 @@ TEST(SimdKernels, AFarCellHasAsManyOuterCellsAroundAsItSays) {
     const SteepField field(5, 1, is_lone ? &lone : nullptr);
     const VoxLayout& layout = field.layout();
     for (std::size_t i = 0; i < layout.bricks.size(); ++i) {
-      int nearest = kMostFarCells + 1;  // used cell, in cells along the axis on which it is farthest
+      int nearest = kMostFarCells + 1;  // distance to the nearest used cell, in cells on its farthest axis
       for (std::size_t k = 0; k < layout.bricks.size(); ++k)
         if (layout.bricks[k] != kOutside)
           nearest = std::min(nearest, (layout.cellAt(k) - layout.cellAt(i)).cwiseAbs().maxCoeff());

@@ -113,7 +113,7 @@ TEST_F(VoxMapCacheTest, EveryDamagedFileIsBuiltAgainWithAWarningAndReplaced) {
   std::vector<std::string> damaged = {"", "vpscache", std::string(5000, 'x'), good + "x"};
   for (const std::size_t length : {good.size() / 2, good.size() - 1, std::size_t{144}, std::size_t{150}})
     damaged.push_back(good.substr(0, length));
-  // Any bit of the header, and some bits of the rest.
+  // Flips one bit in each byte of the header, and in some bytes of the rest.
   for (std::size_t i = 0; i < good.size(); i += i < 160 ? 1 : good.size() / 40) {
     damaged.push_back(good);
     damaged.back()[i] = static_cast<char>(damaged.back()[i] ^ (1 << i % 8));

@@ -68,14 +68,15 @@ TEST(ResampledVoxMap, EveryNodeIsTheSourceReadThere) {
       // Half a quantum of the resampled map, and the rounding of positions in the vectorised reading: 1e-4
       // voxel.
       ASSERT_NEAR(moved.distance(p), expected_m, 0.51 * moved.quantum_m() + 1e-4 * kVoxel_m);
-      // Holds at every distance; the margin is for the rounding of doubles.
+      // The lower bound holds at every distance; the margin is for the rounding of doubles.
       ASSERT_LE(moved.lowerBound(p), truth.closest(X_PM * p).distance_m + 1e-12) << p.transpose();
     });
   }
 }
 
 TEST(ResampledVoxMap, SphereStaysWithinTwiceTheSmoothError) {
-  // Trilinear on a sphere: h^2/8 times 2/r, once in the source map and once in the resampled one.
+  // Error of trilinear interpolation on a sphere: h^2/8 times 2/r, once in the source map and once in the
+  // resampled one.
   constexpr double kRadius_m = 0.008;
   const VoxMap source = buildVoxMap(makeSphere(kRadius_m, 6), {kVoxel_m, 4});
   const Pose X_MP = RandomPoints(5).pose(0.002);
@@ -102,7 +103,7 @@ TEST(ResampledVoxMap, MountingIsTheUnionWithTheResampledPart) {
     ASSERT_EQ(mounted.owner(p), expected.owner(p));
   });
   EXPECT_EQ(mounted.partCount(), 2u);
-  // The map below is unchanged.
+  // Mounting the pin does not change the plate's map.
   const VoxMap again = buildVoxMap(makeBox({0.02, 0.02, 0.004}), kSettings);
   forRandomNodes(5000, 0.013, [&](const Vec3& p) { ASSERT_EQ(plate.distance(p), again.distance(p)); });
 }
@@ -163,8 +164,8 @@ TEST(ResampledVoxMap, APartFarFromTheOriginTakesAsLittleMemoryAsOneNearIt) {
   const auto moved = [&](double cells) {
     return resampledVoxMap({&ball, Pose::translation(cells * 8 * kVoxel_m * Vec3::Ones())}, kSettings);
   };
-  // Moved by whole cells: the same grid about the part, and the same bricks except for the rounding of
-  // positions.
+  // A map that is moved by whole cells has the same grid about the part, and the same bricks except for the
+  // rounding of positions.
   EXPECT_LT(static_cast<double>(moved(50).memoryBytes()), 1.01 * static_cast<double>(moved(0).memoryBytes()));
   EXPECT_LT(moved(50).distance(50 * 8 * kVoxel_m * Vec3::Ones()), 0);
 }

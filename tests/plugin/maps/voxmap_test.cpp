@@ -109,7 +109,8 @@ TEST(VoxMap, UnsharedVerticesMakeNoDifference) {
 TEST(VoxMap, SphereReportsItsAnalyticDistance) {
   constexpr double kRadius_m = 0.01;
   const VoxMap map = buildVoxMap(makeSphere(kRadius_m, 5), kSettings);
-  // Trilinear: h^2/8 times the summed second derivatives, 2/r for a sphere, r least at the band's inner edge.
+  // Error of trilinear interpolation: h^2/8 times the summed second derivatives, 2/r for a sphere, r least at
+  // the band's inner edge.
   const double interpolation_m = kVoxel_m * kVoxel_m / 8 * 2 / (kRadius_m - map.band_m());
   // Facets: the icosahedron's edge of 1.051 r is halved five times, and at most 1.15 times longer where it
   // bulges. A circumradius is edge / sqrt(3), and the sagitta is circumradius^2 / (2 r).
@@ -157,7 +158,7 @@ TEST(VoxMap, NormalsOfASphereAreRadial) {
   const VoxMap map = buildVoxMap(makeSphere(kRadius_m, 6), kSettings);
   RandomPoints random(7);
   // Second differences of a distance with curvature 1/r: the trilinear gradient is off by about h/r within a
-  // cell, and facets (edge e) turn it by e/r. Averaging over two voxels adds at most as much again.
+  // cell, and facets (edge e) turn it by e/r. Averaging over two voxels adds at most the same error again.
   const double edge_m = 1.051 * 1.15 * kRadius_m / 64;
   const double tolerance_rad = (kVoxel_m + edge_m) / (kRadius_m - kVoxel_m);
   for (int n = 0; n < 20000; ++n) {
@@ -185,7 +186,8 @@ TEST(VoxMap, TrilinearNormalIsTheDerivativeOfTheDistance) {
       difference[axis] =
           map.distance(p + step_m * Vec3::Unit(axis)) - map.distance(p - step_m * Vec3::Unit(axis));
     if (difference.norm() < 0.1 * step_m) continue;  // nearly cancelled: its direction is noise
-    // Linear along each axis, so exact except for rounding: 1e-16 of 1e-3 m over a step of 5e-7 m.
+    // The distance is linear along each axis, so its difference is exact except for rounding: 1e-16 of 1e-3 m
+    // over a step of 5e-7 m.
     ASSERT_LT((n_M - difference.normalized()).norm(), 1e-6);
     ++compared;
   }
@@ -224,8 +226,8 @@ TEST(VoxMap, TheContinuousNormalIsContinuous) {
     for (int n = 0; n < 100; ++n) {
       p += step;
       const Vec3 n_M = map.normal(p);
-      // Nodal gradients of neighbours differ by about h/r, and over a hundredth of a voxel by a hundredth of
-      // that; four times as much for diagonals and facets. A jump between cells would be h/r.
+      // Nodal gradients of neighbours differ by about h/r, and gradients a hundredth of a voxel apart differ
+      // by h/100r; the factor 4 is for diagonals and facets. A jump between cells would be h/r.
       ASSERT_LT((n_M - last).norm(), 4 * 0.01 * kVoxel_m / (kRadius_m - 2 * kVoxel_m));
       last = n_M;
     }
@@ -300,7 +302,7 @@ TEST(VoxMap, AShiftByWholeVoxelsShiftsTheMap) {
   RandomPoints random(19);
   for (int n = 0; n < 20000; ++n) {
     const Vec3 p = random.inBox(Vec3::Constant(0.01));
-    // The shift itself is rounded, to 1e-18; floats round that to their own 6e-8 of the band.
+    // The shift itself is rounded, to 1e-18; floats round distances to 6e-8 of the band.
     ASSERT_NEAR(moved.distance(p + shift), at_home.distance(p), 2e-7 * at_home.band_m());
   }
 }

@@ -139,7 +139,7 @@ TEST(BadInput, MoreBricksThanHaveNamesAreRefusedBeforeMemoryIsAllocated) {
   layout.pool = std::make_shared<VoxPool>(0);
   const std::string said = refusalOf([&] { takeBricks(layout, VoxPool::kMaxBricks + 1); });
   EXPECT_NE(said.find("5835552 bricks"), std::string::npos)
-      << said;  // (2^32 - 1) / 736, less the two constant ones, and one too many
+      << said;  // (2^32 - 1) / 736 bricks, less the two constant bricks, plus one
   EXPECT_NE(takeBricks(layout, 1), 0u);
 }
 

@@ -59,7 +59,7 @@ class Faults {
 
  private:
   double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_()) / 4294967296.0;  // all bits of 32
+    return low + (high - low) * static_cast<double>(random_()) / 4294967296.0;  // uses all 32 bits
   }
   Triangle& any() {
     return mesh_.triangles[static_cast<std::size_t>(uniform(0, static_cast<double>(mesh_.triangles.size())))];

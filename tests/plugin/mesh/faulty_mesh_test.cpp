@@ -471,7 +471,7 @@ void expectSameAnswers(const VoxMap& map, const PointShell& shell) {
 
 TEST(FaultyMesh, BeyondTheBandEveryPointIsOutsideForAnyWindingNumber) {
   const Mesh pipe = pipeWithAFlippedWall();
-  ASSERT_GT(WindingNumber(pipe).at({0, 0, 0.0235}).w, 0.5);  // the rim is nearer than that, at 0.25 mm
+  ASSERT_GT(WindingNumber(pipe).at({0, 0, 0.0235}).w, 0.5);  // beyond a directory with voxels of 0.25 mm
   const PointShell shell = buildPointShell(makeSphere(0.003, 4), {0.2e-3, 0.35});
   const VoxMap map = buildVoxMap(pipe, {0.25e-3, 4});
   expectOutsideBeyondTheBox(map, 0.25e-3);
@@ -510,7 +510,7 @@ TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOneThread) {
   }
 }
 
-/// A cube of tetrahedra, `along` each way, a tetrahedron's size apart.
+/// A cube of tetrahedra, `along` of them on each axis, a tetrahedron's size apart.
 Mesh tetrahedra(int along) {
   Mesh mesh;
   for (int n = 0; n < along * along * along; ++n) {
@@ -543,7 +543,8 @@ TEST(FaultyMesh, ManySeparateShellsAreSoundAndAreTurned) {
 TEST(FaultyMesh, TwoOverlappingShellsAmongManyAreFound) {
   const Mesh apart = tetrahedra(12);
   for (const std::uint32_t shell : {1u, 700u, 1727u}) {
-    // One reaches into its neighbour; another faces in and lies within its neighbour, as a cavity.
+    // In one mesh a shell reaches into its neighbour; in the other mesh it faces in and lies within its
+    // neighbour, as a cavity.
     Mesh overlapping = apart, hollow = apart;
     for (std::uint32_t v = 4 * shell; v < 4 * shell + 4; ++v) {
       overlapping.vertices[v].z() -= 1.5e-3;

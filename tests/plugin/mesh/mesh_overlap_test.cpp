@@ -68,11 +68,11 @@ TEST(MeshOverlap, WhatIsApartOrTouchesDoesNotOverlap) {
   const OverlapMesh block = box(0.1, 0.1, 0.1), tube = overlapMesh(makeTube(0.5, 0.4, 0.2, 64));
   EXPECT_EQ(deepestOverlap(block, Pose(), block, Pose::translation(Vec3(0.1001, 0, 0))).depth_m, 0);
   EXPECT_LE(deepestOverlap(block, Pose(), block, Pose::translation(Vec3(0.1, 0.03, 0))).depth_m, 1e-16);
-  // In the bore, at the place where the boxes overlap.
+  // The block lies in the tube's bore, at the place where their boxes overlap.
   EXPECT_EQ(deepestOverlap(tube, Pose(), block, Pose()).depth_m, 0);
 }
 
-// A resting part lies on long edges. Judging them must not take longer than judging short ones.
+// A resting part lies on long edges, which must not take longer to judge than short edges.
 TEST(MeshOverlap, AFlatContactNeedsFewPieces) {
   const OverlapMesh floor = box(1, 1, 0.2), block = box(0.3, 0.2, 0.1);
   const Pose X = Pose::translation(Vec3(0, 0, 0.15 - 2e-9));

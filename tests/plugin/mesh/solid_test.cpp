@@ -52,8 +52,8 @@ class Probes {
 };
 
 /// True if the sign changes without a surface between p and a corner of its cell: the sum of their distances
-/// from the surface exceeds the distance between them. The middle of a hole passes between them, and a field
-/// between nodes of both signs has no meaning there.
+/// from the surface exceeds the distance between them. The middle of a hole then lies between p and the
+/// corner, and a field between nodes of both signs has no meaning in a hole.
 bool isInHole(const Solid& solid, double exact_m, const VoxMap& map, const Pose& X_MP, const Vec3& p,
               double crack_m) {
   const double h = map.voxel_m();
@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(Of, SolidOfFaultyMesh, testing::ValuesIn(faultyMeshes()
 });
 
 TEST(Solid, ThereAreAtLeastTwentyKindsOfFaultyMesh) {
-  EXPECT_GE(faultyMeshes().size(), 22u);  // two are closed
+  EXPECT_GE(faultyMeshes().size(), 22u);  // two of these meshes are closed
 }
 
 }  // namespace

@@ -71,8 +71,8 @@ TEST(PairQuery, BothSidesConvergeToTheIntegral) {
   const double expected_N = 0.5 * kStiffness * (std::numbers::pi * R * delta_m * delta_m + plane_side);
   TouchSummary sum;
   queryBothSides(block().side(), ball().side(), sunkBall(delta_m), {}, kStiffness, Vec3::Zero(), sum);
-  // Sums over points of a force that grows from the rim. Measured: 1 % at a spacing of 0.2 mm in a cap 1.5 mm
-  // wide.
+  // The sum over points of a force that grows from the rim has an error: 1 % was measured at a spacing of 0.2
+  // mm in a cap 1.5 mm wide.
   EXPECT_NEAR(sum.F_O_M.f.z(), expected_N, 0.03 * expected_N);
   EXPECT_NEAR(sum.max_depth_m, delta_m, 0.02 * delta_m);
 }
@@ -92,7 +92,7 @@ TEST(PairQuery, AMemoryChangesNoBit) {
 
 TEST(PairQuery, NothingAllocates) {
   const Pose X_MP = sunkBall(0.3 * kMm);
-  const PairSide on_block = block().side(), on_ball = ball().side();  // built here, if not before
+  const PairSide on_block = block().side(), on_ball = ball().side();  // builds both bodies, if none has yet
   vps_test::NoAllocScope guard;
   TouchSummary sum;
   queryBothSides(on_block, on_ball, X_MP, {}, kStiffness, Vec3::Zero(), sum);

@@ -76,7 +76,7 @@ TEST_F(PlyIo, AsciiOfAnotherProgramIsReadInAnyOrderOfProperties) {
   EXPECT_EQ(shell.inward[1], Vec3(0, 0, -1));
   EXPECT_EQ(shell.area_m2[0], 4);
   EXPECT_NEAR(shell.inward[2].norm(), 1, 1e-15);  // written with seven digits, normalised on reading
-  EXPECT_EQ(shell.spacing_m, std::sqrt(3.0));     // of the mean area
+  EXPECT_EQ(shell.spacing_m, std::sqrt(3.0));     // spacing of the mean area
   EXPECT_EQ(shell.nodes.size(), 1u);
 }
 

@@ -11,8 +11,8 @@
 namespace vps {
 namespace {
 
-/// Checks the definition. At each level with half the radius, a point joins if no joined point is within the
-/// radius; points that remain after all levels are appended.
+/// Checks that an order has its defined property: at each level with half the radius, a point joins if no
+/// joined point is within the radius; points that remain after all levels are appended.
 bool followsItsRule(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& order) {
   Box box;
   for (const Vec3& p : points) box.add(p);
@@ -25,7 +25,7 @@ bool followsItsRule(const std::vector<Vec3>& points, const std::vector<std::uint
     };
     while (joined < order.size() && !isNear(order[joined])) ++joined;
     for (std::size_t k = joined; k < order.size(); ++k)
-      if (!isNear(order[k])) return false;  // it should have joined at this level
+      if (!isNear(order[k])) return false;  // the point should have joined
   }
   return true;
 }

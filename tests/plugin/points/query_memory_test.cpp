@@ -81,7 +81,7 @@ TEST_P(QueryMemoryTest, SlowMotionIsNoticedAfterAVeryLongJump) {
   };
   ask(scene.start);
   ask({scene.start.R, scene.start.p + Vec3(1e9, 0, 0)});
-  // Doubles near that distance, in voxels, are at least 2^-11 apart: 100 nm or more. Steps are 50 nm.
+  // Doubles near 1e9 m, in voxels, are at least 2^-11 apart: 100 nm or more. Steps are 50 nm.
   const Vec3 aside(0.6, 0, 0.8);
   std::set<std::size_t> counts;
   for (int i = 0; i <= 6000; ++i) {

@@ -48,8 +48,8 @@ TEST(Query, BallOnBallReportsAnalyticDepthAndNormal) {
     const Vec3 n = (mesh.vertices[b] - p).cross(mesh.vertices[c] - p).normalized();
     sagitta_m = std::max(sagitta_m, map_radius_m - n.dot(p));
   }
-  // Trilinear: h^2/8 times the summed second derivatives, 2/r; the facets lie inside the sphere by the
-  // sagitta.
+  // Error of trilinear interpolation: h^2/8 times the summed second derivatives, 2/r; the facets lie inside
+  // the sphere by the sagitta.
   const double tol_m = h * h / (4 * (map_radius_m - map.band_m())) + sagitta_m + map.quantum_m();
   // Facet normals differ from the sphere's by about sqrt(2 sagitta / r); differences over 2h are off by h^2/6
   // of the curvature.
@@ -94,7 +94,8 @@ TEST(Query, PegInBoreReportsDepthAndNormalWithinHalfAMicron) {
   const PointShell shell = shellOf(makeCylinder(peg_m, 20 * kMm, segments), 0.5 * kMm);
   const double aside_m = 13 * kUm;  // 10 um of clearance, 3 um deep
   const Pose X_MP = Pose::translation({aside_m, 0, 0});
-  // Facets: sagitta. Trilinear: h^2/8 times 1/r, the distance's one second derivative.
+  // The facets' error is the sagitta, and that of trilinear interpolation is h^2/8 times 1/r, the distance's
+  // one second derivative.
   const double sagitta_m = bore_m * (1 - std::cos(std::numbers::pi / segments));
   const double tol_m = sagitta_m + h * h / (8 * (peg_m - map.band_m())) + map.quantum_m();
   ASSERT_LT(tol_m, 0.5 * kUm);
@@ -110,7 +111,7 @@ TEST(Query, PegInBoreReportsDepthAndNormalWithinHalfAMicron) {
     EXPECT_NEAR(c.n_M.y(), -c.p_M.y() / rho_m, tol_rad);
     deepest_m = std::max(deepest_m, -c.distance_m);
   }
-  EXPECT_NEAR(deepest_m, 3 * kUm, tol_m + 0.1 * kUm);  // and the peg's own facets
+  EXPECT_NEAR(deepest_m, 3 * kUm, tol_m + 0.1 * kUm);  // and the error of the peg's facets
 }
 
 TEST(Query, PenaltyForceOfABallOnAPlateConvergesToTheIntegral) {
@@ -124,13 +125,13 @@ TEST(Query, PenaltyForceOfABallOnAPlateConvergesToTheIntegral) {
     const Vec3 center_M(1.1 * kMm, 0.7 * kMm, 5 * kMm + R - delta_m);
     const ContactSet set = contactsOf(map, shell, Pose::translation(center_M));
     const Wrench F = penaltyWrench(set.contacts, k, center_M);
-    // A cap of area A = 2 pi R delta has n = A / 0.8 s^2 points. Each represents a cell whose border is known
-    // to the cell's size, so the error of the sum is that of random cells at the rim: s * perimeter of d/2 ~
-    // (s / cap radius)^1.5.
+    // A cap of area A = 2 pi R delta has n = A / 0.8 s^2 points. Each point represents a cell whose border is
+    // known to the cell's size, so the error of the sum is that of random cells at the rim: s * perimeter of
+    // d/2 ~ (s / cap radius)^1.5.
     const double cap_m = std::sqrt(2 * R * delta_m);
     const double tol = std::pow(spacing_m / cap_m, 1.5) + 0.01;  // facets: 2 sagitta / delta
     EXPECT_NEAR(F.f.z() / exact_N, 1, tol) << spacing_m;
-    EXPECT_LT(F.f.head<2>().norm() / exact_N, 1e-4);  // a plane's normals: a quantum over 2h
+    EXPECT_LT(F.f.head<2>().norm() / exact_N, 1e-4);  // error of a plane's normals: a quantum over 2h
     EXPECT_LT(F.tau.norm() / (exact_N * cap_m), tol);
   }
 }
@@ -202,8 +203,8 @@ const std::vector<Pair>& pairs() {
   return all;
 }
 
-/// Poses of all kinds: free, near, touching, deep. Half of them are nearly aligned, so that whole faces are
-/// near the cutoff.
+/// Poses of all kinds: free, near, touching, deep. Half of the poses are nearly aligned, so that whole faces
+/// are near the cutoff.
 std::vector<Pose> manyPoses(const Pair& pair, int count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);

@@ -244,7 +244,7 @@ TEST(RepresentativePoints, PointsOnEdgesStandForNeighboursOnly) {
     EXPECT_LE(box.size().norm(), 0.25 * tile_m);
     EXPECT_FALSE(faces.contains(group));
   }
-  for (const auto& [group, box] : faces) EXPECT_LE(box.size().minCoeff(), 1e-9);  // each on one face
+  for (const auto& [group, box] : faces) EXPECT_LE(box.size().minCoeff(), 1e-9);  // each group is on one face
 }
 
 TEST(RepresentativePoints, DoesNotAllocateAndRejectsABadPose) {

@@ -246,8 +246,8 @@ const std::vector<Oddity>& oddities() {
        "plate", "block", kRed, "not in the file"},
       {"components",
        [](File3mf& f) {
-         // Rotated by 90 degrees about z, which moves (0, -10, 0) to (10, 0, 0), and rotated back by another
-         // component.
+         // One component rotates the object by 90 degrees about z, which moves (0, -10, 0) to (10, 0, 0), and
+         // another component rotates it back.
          f.more_objects =
              R"(<object id="3" type="model"><components><component objectid="2" )"
              R"(transform="0 -1 0 1 0 0 0 0 1 0 -10 0"/></components></object>)"

@@ -265,7 +265,7 @@ TEST_F(ImportOddities, OfGltfChangeNothing) {
       try {
         const ImportedCad cad = importCad(written("odd.gltf", odd.text), settings);
         EXPECT_EQ(cad.parts.size(), 1U) << odd.name;
-        // y is up in glTF and z here.
+        // y is up in glTF, and z in the imported parts.
         expectBox(cad, 0, odd.part, odd.scale * Vec3(4, 2, 3), odd.name);
         EXPECT_TRUE(cad.states_unit);
         for (std::size_t k = 0; k < 3; ++k)

@@ -98,7 +98,7 @@ TEST(CheckFits, ADividedMeshHasTheSizesOfItsCorners) {
 }
 
 TEST(CheckFits, AKeywayLeavesTheRestOfTheBore) {
-  // The bore covers 300 degrees. The facets of the rest are left out, so the surface is open there.
+  // The bore covers 300 degrees; the facets of the other 60 degrees are left out, so the surface is open.
   Mesh bore = makeTube(0.02, 0.00601, 0.03, 180);
   std::erase_if(bore.triangles, [&](const auto& t) {
     const Vec3 p = (bore.vertices[t[0]] + bore.vertices[t[1]] + bore.vertices[t[2]]) / 3;

@@ -129,7 +129,7 @@ TEST(CheckPairs, APinIsAClashFromTheErrorOn) {
 }
 
 // Sixteen facets have a chord error of 96 um in the radius. The base of the disc and the plate are flat and
-// have none.
+// have no chord error.
 TEST(CheckPairs, AFlatFaceInAFlatFaceIsAClashHoweverCoarseTheRoundFacesBesideThem) {
   const Pose X_WP(rotationFromVector(Vec3(0.4, -1.1, 0.3)), Vec3(0.2, -0.1, 0.3));
   for (const int segments : {16, 24, 60, 200})

@@ -114,7 +114,7 @@ TEST(CheckThreads, ANutLeavesItsRodByScrewAtBothEnds) {
                                      drawn("rod", is_left ? mirrored(made.rod) : made.rod)},
                                     true);
     for (const CheckedPart& part : found.parts) {
-      EXPECT_TRUE(part.ways_out_W.empty()) << part.name;  // it cannot be removed in a straight line either
+      EXPECT_TRUE(part.ways_out_W.empty()) << part.name;  // the part cannot leave in a straight line
       ASSERT_EQ(part.screw_ways_out.size(), 2U) << part.name;
       EXPECT_NEAR(part.screw_ways_out[0].axis_W.dot(part.screw_ways_out[1].axis_W), -1, 1e-9);
       for (const ScrewWay& way : part.screw_ways_out) EXPECT_EQ(way.lead_m, is_left ? -1.75e-3 : 1.75e-3);

@@ -283,8 +283,8 @@ TEST(ImportNames, BytesThatAreNoTextAndControlCharactersAreReplaced) {
   EXPECT_EQ(nameOf("Stra\xDF"
                    "e"),
             "Stra" + odd + "e");                                     // Latin-1
-  EXPECT_EQ(nameOf("\xFF\xFEx\xC3"), odd + odd + "x" + odd);         // no first byte, and a cut character
-  EXPECT_EQ(nameOf("a\xC0\xAFz"), "a" + odd + odd + "z");            // an overlong form
+  EXPECT_EQ(nameOf("\xFF\xFEx\xC3"), odd + odd + "x" + odd);         // invalid bytes, and a cut character
+  EXPECT_EQ(nameOf("a\xC0\xAFz"), "a" + odd + odd + "z");            // an overlong encoding
   EXPECT_EQ(nameOf("a\xED\xA0\x80z"), "a" + odd + odd + odd + "z");  // a surrogate
   EXPECT_EQ(nameOf("a\x7Fz"), "a z");
 }
@@ -468,7 +468,7 @@ TEST(ImportFar, TextKeepsAGapThatFloatsAtThatPlaceDoNotHave) {
   EXPECT_TRUE(cad.warnings.empty());
   const CheckResult found = checkAssembly("far", drawnParts(cad), {.has_fits = false, .has_play = false});
   ASSERT_EQ(found.pairs.size(), 1U);
-  EXPECT_NEAR(found.pairs[0].clearance_m, 40e-6, 2 * 20e-3 * 0x1p-24);  // floats about the middle
+  EXPECT_NEAR(found.pairs[0].clearance_m, 40e-6, 2 * 20e-3 * 0x1p-24);  // rounding of floats about the middle
   EXPECT_EQ(found.pairs[0].state, PairState::Apart);
 }
 
@@ -1031,7 +1031,7 @@ TEST(ImportReal, DamagedIgesNeverCrashes) {
   const std::string whole = contents(source);
   ImportSettings coarse;
   coarse.deflection_m = 1e-4;
-  // Open CASCADE 7.6.3 crashes (SIGSEGV) on these seeds of 400; other versions may behave differently.
+  // Open CASCADE 7.6.3 crashes (SIGSEGV) on these two of 400 seeds; other versions may behave differently.
   for (const unsigned seed : {152u, 299u}) {
     const fs::path file = folder.write("damaged.iges", withOtherDigits(whole, seed, 3));
     try {

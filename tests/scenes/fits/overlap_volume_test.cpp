@@ -42,7 +42,7 @@ TEST(OverlapVolume, PrismsWithOneNumberOfFacetsShareARing) {
 }
 
 // A polygon and an equal polygon turned by t share a polygon with twice the corners, whose sides touch the
-// circle inscribed in both. Each of its n pairs of corners spans the angles t and 2 pi / n - t.
+// circle inscribed in both. Each of the polygon's n pairs of corners spans t and 2 pi / n - t.
 TEST(OverlapVolume, TurnedPrismsShareAPolygonOfTwiceTheFacets) {
   for (const int facets : {6, 20, 24})
     for (const double share : {0.1234, 0.25, 0.5}) {

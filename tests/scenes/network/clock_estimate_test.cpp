@@ -45,7 +45,7 @@ TEST(ClockEstimate, AnExchangeWithEqualWaysGivesTheOffsetItself) {
 }
 
 // Half of the round trip bounds the error of one exchange. The shortest of 50 exchanges in each quarter of a
-// second is used; its random delays are about 20 us of at most 100. The test requires 50 us.
+// second is used; its random delays are about 20 us of at most 100. The error must be at most 50 us.
 TEST(ClockEstimate, ThreeSecondsAndAHundredPartsInAMillionAreFoundWithinFiftyMicroseconds) {
   OtherClock other(3, 100e-6, 100e-6);
   ClockEstimate estimate;

@@ -124,7 +124,7 @@ bool comes(TrackedHeads& heads, RosTopics& tracker, const Vec3& published_S, con
 
 TEST_F(HeadStream, AHeadFollowsItsTopicAndStaysInFrontOfTheScreen) {
   TrackedHeads heads(load(kTopic + "head = {position = [0, -1, 0.5], rpy_deg = [90, 0, 0]}\n"));
-  heads.waitForAll(0);  // its pose is known
+  heads.waitForAll(0);  // the head's pose is known
   EXPECT_TRUE(heads.isLive());
   EXPECT_EQ(heads.at(0).viewers[0].X_SE.p, Vec3(0, -1, 0.5));
   RosTopics tracker(kDomain, "lo", "tracker", Scene());

@@ -198,8 +198,8 @@ TEST(Messages, TheHapticThreadsMessagesAreWrittenAndReadWithoutAllocating) {
   EXPECT_FALSE(writer.write(log).empty());
 }
 
-// The whole states over UDP. A pose is accurate to a float's rounding (6e-8 of a length) and to 20 bits of a
-// quaternion, twist and wrench to a half float's rounding (5e-4).
+// Tests the whole states that are sent over UDP. A pose is accurate to a float's rounding (6e-8 of a length)
+// and to 20 bits of a quaternion, twist and wrench to a half float's rounding (5e-4).
 TEST(Messages, CompactStatesAreRightToTheirRounding) {
   MessageWriter compact(5, WireForm::Compact);
   MessageReader reader;

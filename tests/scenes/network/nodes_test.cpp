@@ -72,8 +72,8 @@ TEST(Nodes, ARecordingOfTwoNodesIsReplayedBitForBitByOne) {
 
 // A long physics step must not count as a lost node. Earlier the device released the part after 15 ms, and a
 // part of the sample scene did not reach its target. On a busy machine the thread that sends the signs of
-// life may be delayed for as long, which is a true fault. Therefore one session of five must be without
-// faults: if long steps were faults, each session would have several.
+// life may be delayed for 15 ms, which is a true fault. Therefore one session of five must be without faults:
+// if long steps were faults, each session would have several.
 TEST(Nodes, ALongStepOfPhysicsIsNoFault) {
   constexpr int kSessions = 5;
   for (int i = 0; i < kSessions; ++i) {

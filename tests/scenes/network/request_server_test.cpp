@@ -290,7 +290,7 @@ TEST_F(RequestHandlerTest, ARunThatHasBegunIsRecordedNoLongerAndAStoppedOneHasNo
   EXPECT_FALSE(says(between, "again"));
 }
 
-// This is the case of vps render --stay.
+// A request between two runs is possible with vps render --stay.
 TEST_F(RequestHandlerTest, WhoAsksBetweenTwoRunsReceivesTheRecordingOfTheNextOne) {
   const test::TemporaryFolder folder;
   options_.recordings = folder.path();
@@ -520,7 +520,7 @@ TEST_F(RequestServerTest, APartWaitsUntilItIsAskedForAndGainsComeWithIt) {
   join();
   EXPECT_EQ(result_.steps.size(),
             2u);                         // on a busy machine the hand may not have had enough time
-  EXPECT_FALSE(requests().takeGains());  // the run has taken them
+  EXPECT_FALSE(requests().takeGains());  // the run has taken the gains
 }
 
 TEST_F(RequestServerTest, AnotherSceneEndsTheRunAndIsNext) {

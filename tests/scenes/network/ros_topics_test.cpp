@@ -35,8 +35,8 @@ std::string hex(const std::string& bytes) {
   return text;
 }
 
-/// Receives samples as any DDS participant does under the name and type of a ROS 2 node. Its type is plain
-/// bytes, so that it shares no description with the sender.
+/// Receives samples as any DDS participant does under the name and type of a ROS 2 node. The subscriber's
+/// type is plain bytes, so that it shares no description with the sender.
 class Subscriber {
  public:
   Subscriber(int domain, const char* topic, const char* type, const std::uint32_t* ops, std::uint32_t count) {

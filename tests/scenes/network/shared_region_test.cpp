@@ -114,7 +114,7 @@ TEST(SharedRegion, WhatAKilledOwnerLeavesIsReplacedByANewEmptyOne) {
   EXPECT_FALSE(old.isTaken(NodeRole::Render));
   const SharedRegion region = SharedRegion::create(name, 4096);
   EXPECT_EQ(region.memory()[0], std::byte{0});
-  EXPECT_EQ(old.memory()[0], std::byte{1});  // still valid for processes that have it open
+  EXPECT_EQ(old.memory()[0], std::byte{1});  // the old region stays valid for processes that have it open
   EXPECT_TRUE(SharedRegion::open(name, false).isTaken(NodeRole::Render));
 }
 

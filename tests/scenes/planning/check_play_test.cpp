@@ -42,8 +42,8 @@ bool has(const std::vector<Vec3>& ways, const Vec3& d) {
   return std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) { return (way - d).norm() < 1e-6; });
 }
 
-// A round peg in a bore of its own size. The corners of both are at different angles, so that their facets
-// cross.
+// A round peg in a bore of its own size. The corners of peg and bore are at different angles, so that their
+// facets cross.
 TEST(CheckPlay, IsNotCertainWhereRoundFacesOfOneSizeTouch) {
   const CheckedPart peg =
       playOf("peg", {part("bore", makeTube(0.01, 4e-3, 0.02, 100)),
@@ -138,7 +138,7 @@ TEST(CheckPlay, AmongManyPartsAMotionIsStoppedByTheFirstOfThem) {
   std::vector<const PlacedSurface*> pointers;
   for (const PlacedSurface& one : placed) pointers.push_back(&one);
   const auto all = std::make_shared<const StandingParts>(pointers);
-  std::vector<double> crossing_m(placed.size());  // one of them is much greater than the others
+  std::vector<double> crossing_m(placed.size());  // one element is much greater than the others
   crossing_m[5] = 0.5e-3;
   int stopped = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
@@ -157,9 +157,9 @@ TEST(CheckPlay, AmongManyPartsAMotionIsStoppedByTheFirstOfThem) {
             first, MotionSearch(placed[i], alone, of_pair, CrossingDepth::UpToMost).reach(motion, most).s);
       }
       const Reach reach = among_all.reach(motion, most);
-      // Each motion ends within a tenth of the rest depth of the point where facets meet. It is then moved
-      // back by that depth divided by the closing speed, which is at least a tenth of the speed of the
-      // fastest corner, here over 1 mm from the axis.
+      // Each motion ends within a tenth of the rest depth of the point where facets meet. The motion is then
+      // shortened by the rest depth divided by the closing speed, which is at least a tenth of the speed of
+      // the fastest corner, here over 1 mm from the axis.
       EXPECT_NEAR(reach.s, first, 10 * MotionSearch::kRest_m / (is_turn ? 1e-3 : 1)) << i << is_turn;
       EXPECT_EQ(reach.is_stopped, first < most);
       stopped += reach.is_stopped && reach.s > 0 ? 1 : 0;
@@ -230,7 +230,8 @@ TEST(CheckPlay, ATaperSinksByItsLackOverItsSlopeWithinTheErrorThatIsSaid) {
       ASSERT_TRUE(pin.play);
       EXPECT_NEAR(pin.play->m[5], 100 * lack_m, pin.play->error_m[5])
           << bore_segments << ", " << pin_segments;
-      // Twice the chord errors of both, because of their estimate, plus the rest depth, divided by the slope.
+      // Twice the chord errors of bore and pin, because these errors are estimates, plus the rest depth,
+      // divided by the slope.
       const double chords_m = 4.3e-3 * std::pow(std::numbers::pi, 2) / 2 *
                               (1 / std::pow(bore_segments, 2) + 1 / std::pow(pin_segments, 2));
       EXPECT_LT(pin.play->error_m[5], 102 * (2 * chords_m + 0.3e-6)) << bore_segments << ", " << pin_segments;

@@ -39,7 +39,7 @@ Planned planned(const std::vector<DrawnPart>& parts, const std::string& base) {
   return out;
 }
 
-// M6 in the minor diameter of its thread, 5 mm deep below a plate with a through hole.
+// An M6 screw in the minor diameter of its thread, 5 mm deep below a plate with a through hole.
 TEST(DrawnOverlaps, AScrewInTheMinorDiameterIsAThread) {
   Mesh base = test::lathe({{2.459e-3, -20e-3}, {20e-3, -20e-3}, {20e-3, -5e-3}, {2.459e-3, -5e-3}}, 64);
   const std::vector<DrawnPart> parts = {at("base", base, {0, 0, 0}),

@@ -51,8 +51,8 @@ TEST_P(MarginByGeometry, IsTheGapOnEachSide) {
 }
 
 // A displacement across the path makes the peg touch after the same gap. A rotation makes an edge of the
-// length inside the bore touch. The angle is at most the gap over half of that length (rotation about the
-// middle) and at least the gap over the whole length.
+// length inside the bore touch. The angle is at most the gap over half of the length inside the bore
+// (rotation about the middle) and at least the gap over the whole length.
 TEST_P(MarginByGeometry, HasThePlayAcrossThePath) {
   const MarginResult result = measureMargins(pegInCup(GetParam()), byGeometry());
   const StepMargin& step = result.steps[0];

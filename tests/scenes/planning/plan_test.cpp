@@ -337,7 +337,7 @@ TEST(Plan, ABlockRisesWhereItHasRoom) {
   EXPECT_NEAR(risesAt_m(0.02), 0.024 - 0.5 * 0.05 * 0.01 * std::sqrt(3.0), 20e-6);
 }
 
-// The same housing with its opening closed.
+// The roofed box with its opening closed.
 TEST(Plan, ABlockInAClosedHousingIsBlocked) {
   Mesh closed = roofedBox();
   append(closed, block({0.015, -0.01, 0.012}, {0.04, 0.01, 0.015}));
@@ -546,8 +546,8 @@ TEST(CheckWays, AClearanceThatIsLessThanPlannedIsNamed) {
   EXPECT_EQ(faults.front().planned_m, 3e-3);
 }
 
-// The block moves at 45 degrees to the upper left. Its upper right edge (x = 10, z = 25 mm) passes the lower
-// left edge of the post at a distance of 3 mm, halfway along the path.
+// The block moves at 45 degrees to the upper left. The block's upper right edge (x = 10, z = 25 mm) passes
+// the lower left edge of the post at a distance of 3 mm, halfway along the path.
 TEST(CheckWays, TheLeastClearanceOfAStraightWayIsFoundBetweenItsEnds) {
   const double sum_m = 35e-3 + 3e-3 * std::sqrt(2.0),
                difference_m = 75e-3;  // z + x and z - x of the post's edge

@@ -38,7 +38,7 @@ int expectTruth(const test::VoxelPuzzle& puzzle, std::uint64_t seed) {
 }
 
 // Of 300 cubes 211 come apart, and of 133 burrs, found among the first 100,000 seeds, 88; the planner is
-// right in all 433 cases. The tests run some of them.
+// right in all 433 cases. The tests run some of the 433 cases.
 TEST(PuzzlePlan, PiecesOfACubeComeApartIfAnExhaustiveSearchSaysSo) {
   int apart = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed)

@@ -181,7 +181,8 @@ Mesh dividedBox(const Vec3& size, int n) {
   return mesh;
 }
 
-// The bore is a separate shell in the middle of the list; a part does not have to be one solid for this.
+// The bore is a separate shell in the middle of the list; a part need not be one solid for its walls to be
+// found.
 TEST(WallSizes, ABoreOfAFewFacetsInAVeryFinePartIsFound) {
   for (const int facets : {12, 24, 64})
     for (const int n : {40, 150}) {  // 19200 and 270000 facets

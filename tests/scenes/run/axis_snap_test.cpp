@@ -121,7 +121,7 @@ Felt pullAside(const std::string& record, double pulled_s, double snapped_s) {
   SnapshotTap tap;
   tap.give = [&](Snapshot&& shot) {
     tap.is_wanted = true;
-    if (shot.step < 0 || !shot.has_hand || shot.time_s > 2.4) return;  // after that the hand gives up
+    if (shot.step < 0 || !shot.has_hand || shot.time_s > 2.4) return;  // after 2.4 s the hand gives up
     (snaps ? felt.after_N : felt.before_N) = shot.F_hand_W.f.x();
     (snaps ? felt.part_after_m : felt.part_before_m) = shot.bodies[1].X_WP.p.x();
   };
@@ -145,8 +145,8 @@ TEST(AxisSnap, IsFeltByTheHandThroughTheCoupling) {
   EXPECT_LT(felt.after_N, -1);
   EXPECT_GT(felt.after_N, -kPeak_N);
   EXPECT_LT(felt.part_after_m, felt.part_before_m - 0.3e-3);
-  // Switching it on is the program's work, not the loop's. 1 mJ: the energy that the passivity controller
-  // leaves.
+  // Switching axis snap on is work of the program, not of the loop. 1 mJ is the energy that the passivity
+  // controller leaves.
   EXPECT_LT(felt.result.energy.injected_J, 1e-3);
 }
 

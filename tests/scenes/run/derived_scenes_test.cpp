@@ -84,7 +84,7 @@ TEST(PutDown, PartsThatStartAtOnePlaceAreLaidOutSideBySide) {
 TEST(PutDown, APartTakenFreelyGoesWhereTheHandGoesAndNeverEndsByItself) {
   const Scene scene = twoPins();
   std::vector<Pose> X_WP = laidOut(scene);
-  X_WP[2] = scene.steps[1].X_WP_target;  // the part lies at its target, which does not end the step here
+  X_WP[2] = scene.steps[1].X_WP_target;  // the part lies at its target, which does not end this step
   Scene free = sceneOfOnePart(scene, X_WP, 2);
   EXPECT_TRUE(free.parts[1].is_fixed);
   EXPECT_FALSE(free.parts[2].is_fixed);

@@ -57,7 +57,7 @@ TEST(HeavyParts, AreBroughtAsLightOnesAreAndTold) {
       << warnings[0];
 }
 
-// A part that falls into its place has not been brought there.
+// A part that falls into its place has not been moved to it by the device.
 TEST(HeavyParts, APartThatFallsWhileTheDeviceFailsIsNotShown) {
   Scene scene = pegInCup({});
   scene.coupling.max_force_N = 2000;  // the loop accepts at most 1000

@@ -11,8 +11,8 @@
 namespace vps::scenes {
 namespace {
 
-// A square key with 0.2 mm may lie in the corner of its pocket, 0.14 mm from where it is drawn: half of the
-// clearance in both directions.
+// A square key with 0.2 mm of clearance may lie in the corner of its pocket, 0.14 mm from where it is drawn:
+// half of the clearance in both directions.
 TEST(LooseKey, IsHomeWhereverItsPocketLetsItLie) {
   PegInCup key;
   key.flats = 4;

@@ -81,7 +81,7 @@ TEST(ModelPlan, ModelsThatDoNotFitTheMemoryAreRefusedInWordsBeforeTheyAreBuilt) 
   } catch (const LoadError& error) {
     EXPECT_NE(std::string(error.what()).find("MB of memory"), std::string::npos) << error.what();
   }
-  // The estimate of the models alone is at most that with the fixed field, which is what `most` counts.
+  // The estimate of the models alone is at most the estimate with the fixed field, which `most` counts.
   options.progress = {};
   options.memory_bytes = 1.01 * needed_bytes;
   EXPECT_NO_THROW(assemble(scene, options));

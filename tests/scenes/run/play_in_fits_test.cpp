@@ -122,8 +122,8 @@ TEST(DisplacedMates, AShaftPassesOnNothingAlongItsAxis) {
   EXPECT_LT((by_m[1] - down_m - along_m).norm(), 1e-9);  // the collar may rest on the axle's shoulder
 }
 
-// The axle hangs 50 um low in its hole, and the collar as much lower on the axle: 100 um, the tolerance of
-// its fit alone.
+// The axle hangs 50 um low in its hole, and the collar hangs 50 um low on the axle: together 100 um, the
+// tolerance of the collar's fit alone.
 TEST(DisplacedMates, ACollarOnAnAxleThatHangsInItsHoleIsInPlace) {
   Scene scene = collarOnAxle();
   const AssembleResult result = assemble(scene);

@@ -17,7 +17,7 @@ const Vec3 kDown(0, 0, -1);
 
 struct Path {
   double turns = 2, advance_per_turn_m = 2e-3, lean_rad = 0;
-  double side = 1;  ///< -1: turned the other way
+  double side = 1;  ///< -1: turned in the other direction
 };
 
 /// Rows of a screw motion, after a first try of half a turn that must not count.
@@ -58,7 +58,7 @@ std::string faultOf(const Path& path) {
 
 TEST(ScrewMotion, TurnsAdvanceAndLeanAreThoseOfTheLastTry) {
   const StepResult result = measured({.turns = 3, .advance_per_turn_m = 1.9e-3, .lean_rad = 0.01});
-  EXPECT_NEAR(result.turns, 3, 1e-4);  // the error by the lean goes with its square
+  EXPECT_NEAR(result.turns, 3, 1e-4);  // the error is quadratic in the lean
   EXPECT_NEAR(result.advance_per_turn_m, 1.9e-3, 1e-7);
   EXPECT_NEAR(result.lean_rad, 0.01, 1e-6);
 }
@@ -97,7 +97,7 @@ TEST(ScrewMotion, TheTargetIsAHeight) {
   const SceneStep step = nutStep();
   const Pose X_PG = Pose::translation({0, 1e-3, 0});
   const Mat3 R = rotationFromVector(1.3 * kDown);
-  // Rotated about the axis through G and 0.2 mm too high.
+  // The part is rotated about the axis through G and is 0.2 mm too high.
   const Pose X_WP(R, Vec3(step.X_WP_target * X_PG.p - R * X_PG.p + Vec3(0, 0, 0.2e-3)));
   const Pose X_back = turnedBack(X_WP, step, kDown, X_PG);
   EXPECT_LT((X_back.p - Vec3(0, 0, -3.8e-3)).norm(), 1e-12);

@@ -24,7 +24,8 @@ ScenePart plate(const std::string& name, double z_m) {
   return scenePart(name, ring, {0, 0, z_m}, true);
 }
 
-/// A rod of that length, from 2 mm above through the holes of plates whose upper sides are at these heights.
+/// A rod of the given length that moves from 2 mm above through the holes of plates whose upper sides are at
+/// the given heights.
 Scene rodOver(double length_m, const std::vector<double>& plates_m, std::uint64_t seed) {
   Scene scene;
   scene.file = scene.name = "slender_rod";

@@ -80,7 +80,8 @@ Mesh bumpyPeg(const Bump& bump) {
   });
 }
 
-/// A square hole for it, open above z = 0, with a groove in which the peg's bump runs past one of its own.
+/// A square hole for the peg, open above z = 0, with a groove in which the peg's bump runs past a bump of the
+/// hole.
 Mesh bumpyHole(const Bump& bump) {
   constexpr double kOuter_m = 11e-3, kFloor_m = 4e-3, kLead_m = 1e-3;
   const std::vector<Cut> cuts = cutsOf(kHalf_m + kPlay_m, bump);

@@ -47,8 +47,8 @@ Scene ringOverTwoLands(std::uint64_t seed) {
 }
 
 TEST(SteppedShaft, TakesARingOverItsFirstLandToItsSecond) {
-  // With one of sixty aims, the ring is not yet pressed to its target when the time is over. Which aim this
-  // is changes with any change of rounding.
+  // With one of sixty aims, the ring is not yet pressed to its target when the time is over; which aim is
+  // late changes with any change of rounding.
   constexpr std::uint64_t kAims = 8, kMostLate = 1;
   std::uint64_t late = 0;
   std::ostringstream said;

@@ -441,7 +441,7 @@ TEST_F(SceneFile, TheDualArmMayHaveParametersOfTheUser) {
 }
 
 TEST_F(SceneFile, ATableHeaderWithoutAKeyIsRefused) {
-  // toml++ 3.3 would abort here in a build with assertions.
+  // toml++ 3.3 would abort at these headers in a build with assertions.
   for (const char* header : {"[=]\n", "[[#]]\n", "[\n", "[[{x]]\n"})
     EXPECT_NE(messageOf(kStep + header).find("not valid TOML"), std::string::npos) << header;
 }

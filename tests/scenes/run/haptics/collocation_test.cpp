@@ -19,7 +19,8 @@ Pose trueDevice() {
   return {rotationFromVector(Vec3(0.05, -0.1, 1.2)), Vec3(0.8, 0.3, 0.7)};
 }
 
-/// Twelve points of its workspace, touched with 0.2 mm of error along each axis (standard deviation).
+/// Twelve points of the device's workspace, touched with 0.2 mm of error along each axis (standard
+/// deviation).
 device::Placement calibrated() {
   std::mt19937 random(7);
   std::normal_distribution<double> draw;

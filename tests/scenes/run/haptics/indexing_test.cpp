@@ -75,8 +75,8 @@ TEST(PathSegments, APathThatFitsIsOneSegmentAroundTheMiddle) {
 }
 
 TEST(PathSegments, AStraightMetreTakesThreeSegmentsOfAtMostThirtySixCentimetres) {
-  // A segment has 0.4 m minus 20 mm on each side. The later segments have this length, so the first has the
-  // remaining 0.28 m.
+  // A segment has 0.4 m minus 20 mm on each side. The later segments have the full length of 0.36 m, so the
+  // first has the remaining 0.28 m.
   const Scene scene = farPin();
   const PathSegments segments = splitPath(scene, scene.steps[0], kWorkspace);
   ASSERT_EQ(segments.index_points, (std::vector<std::size_t>{0, 1}));

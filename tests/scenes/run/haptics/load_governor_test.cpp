@@ -21,7 +21,7 @@ LoadGovernor halving() {
 
 /// A load of load(t) periods a step at level 0, and half as much with each level.
 struct Course {
-  std::vector<int> levels;  ///< after each change
+  std::vector<int> levels;  ///< level after each change
   std::vector<double> times_s;
 };
 /// Like PhysicsClock: late steps follow at once, up to a delay of 20 ms.
@@ -78,7 +78,7 @@ TEST(LoadGovernor, LateStepsCountByTheTimeTheyLose) {
   }
 }
 
-// Steps of 5 periods take 2.5, 1.25 and 0.625 periods at levels 1, 2 and 3. A window is 0.25 s. Its last step
+// Steps of 5 periods take 2.5, 1.25 and 0.625 periods at levels 1, 2 and 3. A window is 0.25 s; its last step
 // may end up to 5 ms later, and 20 ms of delay are made up for.
 TEST(LoadGovernor, ALoadThatDoesNotFitGoesDownLevelByLevelAndStaysWhereItFits) {
   LoadGovernor governor = halving();
@@ -98,7 +98,7 @@ TEST(LoadGovernor, ALoadThatNoLevelCanCarryEndsAtTheLastLevelAsOverloaded) {
   EXPECT_TRUE(governor.isOverloaded());
 }
 
-// At half speed, half of the time is lost. That is worse than losing a fifth, and better than losing three
+// At half speed, half of the time is lost, which is worse than losing a fifth and better than losing three
 // fifths. Steps of 1.25 periods lose a fifth, of 2.5 periods three fifths.
 TEST(LoadGovernor, TimeIsSlowedOnlyWhereMoreOfItIsLost) {
   for (const bool is_heavy : {false, true}) {

@@ -85,8 +85,9 @@ bool stoppedAtThree(const AssembleResult& result) {
   return changes.back().to == 3;
 }
 
-// 10 ms of load do not fit into periods of 4 and 8 ms, but into 16 ms. A machine that stops the run for more
-// than the 6 ms between them, again and again, makes a further level right: such a run is made again.
+// 10 ms of load do not fit into periods of 4 and 8 ms, but into 16 ms. A machine that stops the run
+// repeatedly for more than the 6 ms between load and period makes a further level right: such a run is made
+// again.
 TEST(LoadLevel, AnOverloadedRunReducesPointsThenRateAndStopsWhereItFits) {
   AssembleResult result;
   for (int attempt = 0; attempt < 4; ++attempt) {

@@ -64,7 +64,8 @@ AssembleResult runWith(std::function<double(double)> z_m) {
 }
 
 TEST(PersonHand, AStepIsDoneOnceThePartRestsAtItsTarget) {
-  // Down by 0.3 mm at 1 mm/s from 0.6 s on, after the clutch has closed; the plate stops the part at 0.2 mm.
+  // The handle moves down by 0.3 mm at 1 mm/s from 0.6 s on, after the clutch has closed; the plate stops the
+  // part at 0.2 mm.
   const AssembleResult result = runWith([](double t_s) { return -1e-3 * std::clamp(t_s - 0.6, 0.0, 0.3); });
   ASSERT_EQ(result.steps.size(), 1u);
   EXPECT_TRUE(result.completed) << result.steps[0].failure_reason;

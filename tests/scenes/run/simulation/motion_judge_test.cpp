@@ -42,7 +42,7 @@ TEST(MotionJudge, APassageThroughAPlateIsAsDeepAsHalfThePlateAndHasItsTime) {
     EXPECT_NEAR(deepest.depth_m, 1 * kMm, MotionJudge::toleranceOf(1 * kMm)) << speed_m_s;
     EXPECT_GE(judge.bound_m(), 1 * kMm);
     const double z_m = from_m - speed_m_s * deepest.time_s;
-    EXPECT_LT(std::abs(z_m), 6 * kMm) << speed_m_s;  // while it is in the plate
+    EXPECT_LT(std::abs(z_m), 6 * kMm) << speed_m_s;  // at a time when the body is in the plate
     EXPECT_LT(judge.measured(), 60U) << speed_m_s;
   }
 }
