@@ -54,8 +54,8 @@ class Neighbours {
   std::vector<std::vector<const CheckedFit*>> fits_;
 };
 
-/// The task of one part. It is empty for a part that clashes or is pressed in, since an overlapping part has
-/// no free motion to measure.
+/// The task of one part: empty for a part that clashes or is pressed in, since an overlapping part has no
+/// free motion to measure.
 PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const Neighbours& neighbours,
                 const std::shared_ptr<const StandingParts>& all) {
   PartTask task;

@@ -12,13 +12,13 @@ namespace vps::scenes {
 namespace {
 
 constexpr std::size_t kMostParts = 24;         // assumed: more pictures than a reader looks at
-constexpr std::size_t kMostVertices = 40'000;  // assumed: takes a tenth of a second for a part
-constexpr double kFine = 1.0 / 100;            // longest edge in the part's size: about four pixels
+constexpr std::size_t kMostVertices = 40'000;  // assumed: a map of this size takes a tenth of a second
+constexpr double kFine = 1.0 / 100;            // longest edge divided by the part's size: about four pixels
 
 using Edge = std::array<std::uint32_t, 2>;
 
 /// Halves each edge that is longer than longest_m and near the box of another part. The mesh stays closed,
-/// because both facets at an edge divide it. Returns false if there is no such edge.
+/// because both facets at an edge divide it. Returns false if no edge was halved.
 bool divideOnce(Mesh& mesh, double longest_m, const std::vector<Box>& others_W) {
   std::map<Edge, std::uint32_t> middle;
   const auto divided = [&](std::uint32_t a, std::uint32_t b) -> std::uint32_t {

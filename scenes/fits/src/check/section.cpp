@@ -77,7 +77,8 @@ Vec3 depthDirection(const PlacedSurface& a, const PlacedSurface& b, const Vec3& 
     found.emplace_back(within_m, q_W);
     size_m = std::max(size_m, part->surface->box().size().norm());
   }
-  // The deepest point often lies on one of the two surfaces. The other surface then gives the direction.
+  // The deepest point often lies on one of the two surfaces, so that only the other surface gives the
+  // direction.
   for (const auto& [distance_m, q_W] : found)
     if (distance_m > 1e-9 * size_m && distance_m < least_m) {
       least_m = distance_m;

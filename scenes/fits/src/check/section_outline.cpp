@@ -79,8 +79,8 @@ double squaredDistance(const Point& a, const Point& b) {
   return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
 }
 
-/// Joins the end of each open chain to the nearest beginning of a chain. Returns true if an end and its
-/// beginning were apart.
+/// Joins the end of each open chain to the nearest beginning of a chain. Returns true if an end and the
+/// beginning joined to it were more than same_m apart.
 bool closeChains(std::vector<Chain>& open, std::vector<Chain>& closed, double same_m) {
   bool has_gap = false;
   while (!open.empty()) {

@@ -14,7 +14,7 @@ namespace vps::scenes {
 /// A cylinder without ends.
 struct Cylinder {
   Vec3 axis = Vec3::UnitZ();  ///< unit
-  Vec3 p = Vec3::Zero();      ///< on the axis
+  Vec3 p = Vec3::Zero();      ///< point on the axis
   double radius_m = 0;
 
   /// The vector from the axis to x, perpendicular to the axis.
@@ -35,11 +35,11 @@ bool fitCylinder(std::span<const Vec3> points, Cylinder& cylinder);
 /// the facets' chord error.
 struct RoundFace {
   Vec3 axis = Vec3::UnitZ();  ///< unit, in the part's frame
-  Vec3 p = Vec3::Zero();      ///< on the axis
+  Vec3 p = Vec3::Zero();      ///< point on the axis
   double radius_m = 0;
   double from_m = 0, to_m = 0;        ///< along the axis, from p
   double residual_m = 0;              ///< greatest distance of a corner from the cylinder
-  bool is_bore = false;               ///< the material is outside
+  bool is_bore = false;               ///< whether the material is outside the cylinder
   std::vector<std::uint32_t> facets;  ///< ascending
 };
 
@@ -50,14 +50,14 @@ std::vector<RoundFace> roundFaces(const PartSurface& surface);
 /// A screw thread: its flanks, crests and roots.
 struct ThreadFace {
   Vec3 axis = Vec3::UnitZ();  ///< unit, in the part's frame
-  Vec3 p = Vec3::Zero();      ///< on the axis
+  Vec3 p = Vec3::Zero();      ///< point on the axis
   double lead_m = 0;          ///< axial advance in one turn; negative: a left-hand thread
   int starts = 1;
-  bool is_inside = false;             ///< in a bore
-  double from_m = 0, to_m = 0;        ///< along the axis, from p
-  double least_m = 0;                 ///< least radius of the flanks
-  double greatest_m = 0;              ///< radius of the cylinder through crests (of a bore: roots)
-  double residual_m = 0;              ///< greatest distance of a crest (or root) from that cylinder
+  bool is_inside = false;       ///< in a bore
+  double from_m = 0, to_m = 0;  ///< along the axis, from p
+  double least_m = 0;           ///< least radius of the flanks
+  double greatest_m = 0;        ///< radius of the cylinder through the crests (in a bore: the roots)
+  double residual_m = 0;        ///< greatest distance of a crest (or root) from the cylinder of greatest_m
   std::vector<std::uint32_t> facets;  ///< flanks, crests and roots; ascending
 };
 

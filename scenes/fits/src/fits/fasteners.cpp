@@ -19,11 +19,11 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kSameRadius = 2e-3;  // relative difference of equal radii
-constexpr double kSameLine = 1e-2;    // of the radius: greatest distance between the axes of one turned part
+constexpr double kSameLine = 1e-2;  // greatest distance between axes of one turned part, divided by a radius
 // assumed: proportions that catalogues of standard parts keep (ISO 4014, 4032, 7089, 2338, DIN 471)
-constexpr double kMostHead = 4, kLeastHead = 1.2;  // a head's radius divided by its shank's
+constexpr double kMostHead = 4, kLeastHead = 1.2;  // a head's radius divided by its shank's radius
 constexpr double kMostHeadHeight = 3;              // a head's height divided by the shank's radius
-constexpr double kMostNut = 2.5, kLeastNut = 1.3;  // radius of a nut's corners divided by its hole's
+constexpr double kMostNut = 2.5, kLeastNut = 1.3;  // radius of a nut's corners divided by its hole's radius
 constexpr double kMostWasher = 4, kLeastWasher = 1.3;
 constexpr double kFlat = 0.5;                          // a washer's height divided by its hole's radius
 constexpr double kLeastPin = 1, kMostPin = 12;         // a pin's length divided by its diameter
@@ -115,7 +115,7 @@ class Turned {
 
   [[nodiscard]] double volume_m3() const { return std::abs(massProperties(surface_.mesh()).volume_m3); }
 
-  /// Greatest radius of the corners between two places along the axis.
+  /// Greatest distance from the axis of the vertices between two positions along the axis.
   [[nodiscard]] double greatestBeyond(double from_m, double to_m) const {
     double most_m = 0;
     for (const Vec3& x : surface_.mesh().vertices)
@@ -187,8 +187,8 @@ std::optional<FastenerShape> threaded(const PartSurface& surface, const FitFaces
   if (part.radius_m() < 1.05 * thread.greatest_m)
     return shapeOf(FastenerKind::Stud, "stud " + size + " x " + millimetres(part.length_m()), thread.axis,
                    thread.p, thread.greatest_m, range);
-  // A plain shank between the thread and the head belongs to the shank. Its radius is at most that of a fit
-  // bolt.
+  // A plain cylinder between the thread and the head belongs to the shank. The cylinder's radius is at most
+  // that of a fit bolt.
   std::array<double, 2> shank = range;
   for (const RoundFace& round : faces.round)
     if (!round.is_bore && part.isAround(round, thread.greatest_m) &&
@@ -235,7 +235,7 @@ std::optional<FastenerShape> holed(const Turned& part, const RoundFace& bore, co
   return std::nullopt;
 }
 
-/// A pin or an unthreaded screw: a plain cylinder, or one with a head.
+/// A pin or an unthreaded screw: a plain cylinder without or with a head.
 std::optional<FastenerShape> shanked(const Turned& part, const RoundFace& shank) {
   const double r = shank.radius_m, length_m = part.length_m();
   const std::array<double, 2> range = part.rangeOf(shank);

@@ -19,13 +19,12 @@ struct FittedPart {
 };
 
 /// Appends the fits of a shaft in a bore (two cylinders with a common axis) or of a key in a slot (two
-/// parallel faces between two others). The clearance of a fit is at most mostClearance_m(). O(faces of a x
-/// faces of b). Thread-safe.
+/// parallel faces of one part between two of the other part). The clearance of a fit is at most
+/// mostClearance_m(). O(faces of a x faces of b). Thread-safe.
 void appendShaftFits(const FittedPart& a, const FittedPart& b, std::vector<CheckedFit>& out);
 void appendKeyFits(const FittedPart& a, const FittedPart& b, std::vector<CheckedFit>& out);
 /// Appends the fits of an external thread of one part in an internal thread of the other, with a common axis
-/// and lead. Removes the shaft fits that were appended before and belong to crests and roots of these
-/// threads.
+/// and lead. Removes the shaft fits that were appended before and belong to crests and roots of the threads.
 void appendThreadFits(const FittedPart& a, const FittedPart& b, std::vector<CheckedFit>& out);
 
 /// The range in which two faces with nearly parallel axes overlap along the axis of a, as two distances from
@@ -37,8 +36,8 @@ std::array<double, 2> commonRange(const Face& a, const OtherFace& b) {
   return {std::max(a.from_m, std::min(end_m, other_end_m)), std::min(a.to_m, std::max(end_m, other_end_m))};
 }
 
-/// The greatest clearance at which two faces count as a fit. assumed: a quarter of the size, but at least the
-/// clearance of H11/c11 at 3 mm, the smallest sizes of ISO 286, which is 0.18 mm, and no more than the size
+/// The greatest clearance at which two faces count as a fit. assumed: a quarter of the size, but at least
+/// 0.18 mm, the clearance of H11/c11 in the smallest range of ISO 286 (up to 3 mm), and no more than the size
 /// itself.
 inline double mostClearance_m(double size_m) {
   return std::max(0.25 * size_m, std::min(0.18e-3, size_m));
@@ -54,9 +53,9 @@ inline constexpr double kSightTolerance_m = 0.5e-3;
 /// sides.
 inline constexpr double kContactOnBothSides_m = 20e-6;
 
-/// The tolerance of a part's position that a fit of this clearance gives; a negative clearance counts as 0. A
-/// part in a loose rectangular hole may lie in a corner of the hole, off by half of the clearance in two
-/// directions. The part then is in place as far as the fit can tell.
+/// The tolerance of a part's position that a fit of the given clearance gives; a negative clearance counts as
+/// 0. A part in a loose rectangular hole may lie in a corner of the hole, off by half of the clearance in two
+/// directions. A part in the corner still counts as in place.
 inline double fitTolerance_m(double diametral_clearance_m) {
   const double clearance_m = std::max(0.0, diametral_clearance_m);
   constexpr double kToCorner = 0.70710678118654752;  // half of the square root of two

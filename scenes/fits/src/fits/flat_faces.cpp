@@ -11,7 +11,7 @@ namespace {
 
 /// Coordinates in files with six or seven digits deviate by up to 1e-6 of the greatest coordinate.
 constexpr double kFlatFacesRounding = 2e-6;
-constexpr double kFlatFacesParallel = 1e-3;  // 1 - cosine of the normals; corners decide more precisely
+constexpr double kFlatFacesParallel = 1e-3;  // greatest 1 - cosine of parallel normals
 
 double offPlane(const FlatFace& face, const PartSurface& surface, std::uint32_t facet) {
   double off_m = 0;
@@ -20,13 +20,13 @@ double offPlane(const FlatFace& face, const PartSurface& surface, std::uint32_t 
   return off_m;
 }
 
-/// Joins adjacent faces in one plane. Such faces have no common edge where there is a crack, or where facets
-/// are divided on one side of an edge only. Only the kJoined largest faces are examined, so that fine meshes
-/// of curved faces cost little: O(kJoined^2).
+/// Joins adjacent faces in one plane. Adjacent faces have no common edge at a crack, or where facets are
+/// divided on one side of an edge only. Only the kJoined largest faces are examined, so that fine meshes of
+/// curved faces cost little: O(kJoined^2).
 void joinPieces(const PartSurface& surface, double tolerance_m, std::vector<FlatFace>& faces) {
   constexpr std::size_t kJoined = 2000;
-  // Greatest gap between joined pieces, as a share of the smaller piece's size. assumed: slots are wider,
-  // cracks narrower.
+  // Greatest gap between joined pieces, as a share of the smaller piece's size. assumed: slots are wider and
+  // cracks are narrower than this share.
   constexpr double kMostGap = 0.05;
   const std::size_t count = std::min(kJoined, faces.size());
   std::vector<Box> boxes(count);

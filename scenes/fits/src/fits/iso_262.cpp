@@ -68,7 +68,7 @@ std::string nameOf(double nominal_mm, double pitch_mm, bool is_coarse, bool is_l
 
 MetricThread metricThread(double major_m, double lead_m) {
   constexpr double kSamePitch = 0.01;
-  constexpr double kAbove_mm = 1e-3;  // rounding in the drawing
+  constexpr double kAbove_mm = 1e-3;  // excess over the nominal size by rounding in the drawing
   const double pitch_mm = 1e3 * std::abs(lead_m), major_mm = 1e3 * major_m;
   for (const Size& size : kSizes) {
     const double above_mm = major_mm - size.nominal;

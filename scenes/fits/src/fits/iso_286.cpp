@@ -31,9 +31,9 @@ constexpr std::array<Row, 7> kTolerance = {{
     {60, 75, 90, 110, 130, 160, 190, 220, 250, 290, 320, 360, 400},
 }};
 
-// Fundamental deviations of shafts: the upper one of d to h, the lower one of k to p. ISO 286-1:2010, tables
-// 2 to 5; k is that of the grades 4 to 7. Formulas: d 16 D^0.44, e 11 D^0.41, f 5.5 D^0.41, g 2.5 D^0.34, k
-// 0.6 cbrt(D), m IT7 - IT6, n 5 D^0.34, p IT7 + 0 to 5.
+// Fundamental deviations of shafts: the upper deviation of d to h, the lower deviation of k to p. ISO
+// 286-1:2010, tables 2 to 5; the deviation of k is that of the grades 4 to 7. Formulas: d 16 D^0.44, e 11
+// D^0.41, f 5.5 D^0.41, g 2.5 D^0.34, k 0.6 cbrt(D), m IT7 - IT6, n 5 D^0.34, p IT7 + 0 to 5.
 struct Letter {
   char letter;
   Row deviation;
@@ -70,7 +70,7 @@ std::optional<Zone> isoZone(const std::string& zone, double nominal_m) {
       std::find_if(kShafts.begin(), kShafts.end(), [&](const Letter& l) { return l.letter == letter; });
   if (grade < 5 || grade > 11 || row == kShafts.end()) return std::nullopt;
   if (is_hole && letter > 'h')
-    return std::nullopt;  // holes of these letters need corrections that depend on the grade
+    return std::nullopt;  // holes K, M, N and P need corrections that depend on the grade
   const double width_m = 1e-6 * kTolerance[static_cast<std::size_t>(grade - 5)][range];
   const double deviation_m = 1e-6 * row->deviation[range];
   if (letter > 'h') return Zone{deviation_m, deviation_m + width_m};

@@ -25,7 +25,7 @@ double interferenceOf(const CheckedFit& fit) {
   return fit.diametral_clearance_m < -beyond_m ? -fit.diametral_clearance_m : 0;
 }
 
-constexpr double kMiddle = 0.25;    // share of the length to each side; it excludes chamfers at the ends
+constexpr double kMiddle = 0.25;  // examined share of the length to each side of the middle, without chamfers
 constexpr double kFacingOut = 0.1;  // least radial part of the normal of a facet that bounds the ring
 
 double hubOf(const CheckedFit& fit, const PlacedSurface& hub) {

@@ -13,8 +13,8 @@ namespace vps::scenes {
 /// meshes touch or overlap by no more than the distance of the facets from the true faces.
 bool needsFit(const CheckedPair& pair);
 
-/// Removes fits whose interference is greater than the overlap of the parts. Their faces do not belong
-/// together.
+/// Removes fits whose interference is greater than the overlap of the parts. The two faces of such a fit do
+/// not belong together.
 void removeFalseFits(CheckResult& result);
 
 /// Judges the pairs by the fits that were found. The radii of a fit come from corners, which lie on the true
@@ -40,10 +40,12 @@ struct RingVolume {
 };
 
 /// The volume shared by the true cylinders of a fit with interference: pi / 4 (shaft^2 - bore^2) length,
-/// times the share of the ring in which both parts have material. The share is sampled at 64 angles and 16
-/// places along the axis. The error consists of the error of the diameters and of the cells between a sample
-/// with material and one without. A keyway or groove narrower than a cell is missed.
-/// @param aside_m distance of the samples from the cylinders, greater than the meshes' distance from them
+/// times the share of the ring in which both parts have material. The share with material is sampled at 64
+/// angles and 16 places along the axis. The error consists of the error of the diameters and of the cells
+/// between a sample with material and a sample without material. A keyway or groove narrower than a cell is
+/// missed.
+/// @param aside_m distance of the samples from the cylinders, greater than the distance of the meshes from
+/// the cylinders
 RingVolume ringVolume(const CheckedFit& fit, const PlacedSurface& shaft, const PlacedSurface& bore,
                       double aside_m);
 

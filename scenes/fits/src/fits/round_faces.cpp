@@ -212,7 +212,7 @@ class Finder {
   // By facet: whether it lies on a cylinder that covers too small a share of a turn, as a thread's crest
   // does.
   std::vector<bool> is_tried_;
-  std::vector<bool> is_corner_;  // by vertex: lies on an edge between two facets of a curved face
+  std::vector<bool> is_corner_;  // by vertex: whether it lies on an edge between facets of a curved face
   std::vector<std::uint32_t> seen_;
   std::uint32_t round_ = 0;
 };
@@ -229,7 +229,7 @@ bool fitCylinder(std::span<const Vec3> points, Cylinder& cylinder) {
   constexpr int kRounds = 6;
   for (int round = 0; round < kRounds; ++round) {
     const Vec3 u = cylinder.axis.unitOrthogonal(), v = cylinder.axis.cross(u);
-    const double scale_m = cylinder.radius_m;  // makes tilts lengths
+    const double scale_m = cylinder.radius_m;  // factor that converts tilts to lengths
     Mat5 sum = Mat5::Zero();
     Vec5 right = Vec5::Zero();
     for (const Vec3& x : points) {

@@ -14,7 +14,8 @@ namespace {
 constexpr double kMostOffset = 0.02;
 constexpr double kLeastLength = 1e-3;  // least length of a fit, divided by the diameter
 
-/// Fills the fit of a shaft in a bore, both given in the world frame; returns false if they are no fit.
+/// Fills the fit of a shaft in a bore, both given in the world frame; returns false if shaft and bore form no
+/// fit.
 bool fitOf(const RoundFace& shaft, const RoundFace& bore, CheckedFit& fit) {
   const double d_m = 2 * shaft.radius_m, clearance_m = 2 * (bore.radius_m - shaft.radius_m);
   if (std::abs(clearance_m) > mostClearance_m(d_m)) return false;

@@ -37,7 +37,7 @@ struct Flank {
 constexpr double kLeastSlope = 0.15;
 constexpr double kLeastFacing = 0.05;  // least radial part of a flank's normal
 
-/// A facet, independent of an axis.
+/// A facet, with data that do not depend on an axis.
 struct Facet {
   std::uint32_t number = 0;
   Vec3 n = Vec3::Zero(), middle = Vec3::Zero();
@@ -46,7 +46,7 @@ struct Facet {
 
 /// The facets of a surface, and for each direction of an axis the facets whose normals allow them to be
 /// flanks. A plate with holes has many axes of one direction, and most of its facets are flat or plain walls,
-/// which this list leaves out.
+/// which the list for a direction leaves out.
 class FlankFacets {
  public:
   explicit FlankFacets(const PartSurface& surface) {
@@ -60,7 +60,7 @@ class FlankFacets {
 
   /// All facets whose normals meet the demands of flanksAround(), and possibly a few more.
   const std::vector<Facet>& along(const Vec3& axis) {
-    constexpr double kSameWay = 1 - 1e-6;  // cosine: directions within 1.4 mrad
+    constexpr double kSameWay = 1 - 1e-6;  // least cosine of equal directions (1.4 mrad apart)
     constexpr double kMargin = 2e-3;       // margin of slope and facing for directions that are merged
     for (const Direction& known : directions_)
       if (std::abs(axis.dot(known.axis)) > kSameWay) return known.facets;
@@ -108,10 +108,10 @@ std::vector<Flank> flanksAround(FlankFacets& facets, const Line& line, bool is_i
   return out;
 }
 
-/// The flanks of one hand whose lead agrees with the lead that has the largest area.
+/// The flanks of one hand (right or left) whose lead agrees with the lead that has the largest area.
 std::vector<Flank> agreeing(const std::vector<Flank>& flanks) {
   constexpr double kBin = 0.05;  // width of a bin of the lead's logarithm
-  constexpr int kReach = 3;      // bins to each side, since coarse facets scatter
+  constexpr int kReach = 3;      // bins to each side, since the leads of coarse facets scatter
   std::map<std::pair<bool, int>, double> area_m2;
   std::vector<std::pair<bool, int>> bins;
   bins.reserve(flanks.size());
@@ -155,9 +155,9 @@ void keepOneRadius(std::vector<Flank>& flanks) {
 
 bool goAllAround(const std::vector<Flank>& flanks) {
   constexpr std::size_t kParts = 12;
-  constexpr double kLeastTurns = 1.2;  // between the middles of the first and the last facet
-  // Least share of the flanks' cylinder that the flanks cover. A metric thread covers half of it. The
-  // chamfers of a plate's many holes lie all around each hole and cover a few hundredths.
+  constexpr double kLeastTurns = 1.2;  // least turns between the middles of the first and last facets
+  // Least share of the flanks' cylinder that the flanks cover. A metric thread covers half of its cylinder.
+  // The chamfers of a plate's many holes lie all around each hole and cover a few hundredths.
   constexpr double kLeastCovered = 0.05;
   std::array<bool, kParts> is_there = {};
   double from_m = 1e300, to_m = -1e300, least_m = 1e300, area_m2 = 0;
@@ -258,7 +258,7 @@ std::vector<Vec3> farthestCorners(const std::vector<Corner>& corners, double lea
 /// Measures axis, radii and ends of a thread by a cylinder through its crests or roots; points at chamfered
 /// ends are left out.
 bool measure(const PartSurface& surface, const std::vector<Flank>& flanks, ThreadFace& face) {
-  constexpr int kRounds = 4;           // rounds, since a better axis finds better crests
+  constexpr int kRounds = 4;           // number of rounds; a better axis finds better crests
   constexpr double kChamfered = 0.15;  // share of the thread's depth below the crests
   Cylinder crests{face.axis, face.p, 0};
   double depth_m = 0;
@@ -308,8 +308,8 @@ std::vector<Line> candidateAxes(const PartSurface& surface, const std::vector<Ro
     for (int k = 0; k < 3; ++k) add({mass.com, principal.eigenvectors().col(k)});
   };
   addPrincipal(mass.inertia_m5);
-  // A rod whose length is 0.87 times its width has the same inertia about all axes. The distribution of its
-  // normals still tells the axis.
+  // A rod whose length is 0.87 times its width has the same inertia about all axes. The distribution of the
+  // rod's normals still shows the axis.
   Mat3 facing_m2 = Mat3::Zero();
   for (std::uint32_t i = 0; i < surface.mesh().triangles.size(); ++i) {
     const Triangle t = surface.triangle(i);

@@ -22,12 +22,13 @@ ThreadFace threadInWorld(const ThreadFace& face, const Pose& X_WP) {
   return out;
 }
 
-/// Fills the fit of a screw in a nut, both given in the world frame; returns false if they are no fit.
+/// Fills the fit of a screw in a nut, both given in the world frame; returns false if screw and nut form no
+/// fit.
 bool fitOf(const ThreadFace& screw, const ThreadFace& nut, CheckedFit& fit) {
   if (std::abs(screw.axis.dot(nut.axis)) < 0.99) return false;
   if (std::abs(screw.lead_m - nut.lead_m) > kSameLead * std::abs(screw.lead_m) || screw.starts != nut.starts)
     return false;
-  // The crests of each thread must reach into the grooves of the other.
+  // The crests of each thread must reach into the grooves of the other thread.
   if (screw.greatest_m <= nut.least_m || screw.greatest_m > (1 + 0.5 * kMostCrestGap) * nut.greatest_m ||
       nut.greatest_m > (1 + kMostCrestGap) * screw.greatest_m)
     return false;

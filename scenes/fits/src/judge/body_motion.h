@@ -13,7 +13,7 @@
 namespace vps::scenes {
 
 /// The motion of a rigid body in one step: its centre of mass moves along a line, and the body turns about
-/// its centre of mass, both uniformly. Of the two possible rotations the shorter one is taken, so the body
+/// its centre of mass, both uniformly. The rotation is the shorter of the two possible ones, so the body
 /// turns by less than half a turn.
 class BodyMotion {
  public:
@@ -35,8 +35,8 @@ class BodyMotion {
 
 /// Bounds of the motion of two bodies relative to each other.
 struct RelativeMotion {
-  /// Upper bound of the path length of any point of one body in the frame of the other. No depth and no gap
-  /// changes by more than this.
+  /// Upper bound of the path length of any point of one body in the frame of the other body. No depth and no
+  /// gap changes by more than this length.
   double travel_m = 0;
   /// Upper bound of the distance between the path of any point of b, in the frame of a, and the chord of that
   /// path.
@@ -46,8 +46,8 @@ struct RelativeMotion {
 /// @param box_A, box_B boxes of the bodies, in their frames
 RelativeMotion relativeMotion(const BodyMotion& a, const Box& box_A, const BodyMotion& b, const Box& box_B);
 
-/// Greatest displacement of any point of a box that moves from X_a to X_b. It is that of a corner, since the
-/// displacement is a convex function of the point.
+/// Greatest displacement of any point of a box that moves from X_a to X_b. A corner has the greatest
+/// displacement, since the displacement is a convex function of the point.
 inline double greatestDisplacement(const Box& box, const Pose& X_a, const Pose& X_b) {
   double greatest_m = 0;
   for (int corner = 0; corner < 8; ++corner) {

@@ -54,7 +54,7 @@ ExactBody::ExactBody(std::shared_ptr<const Solid> solid)
 double ExactBody::highest_m(const Vec3& n) const {
   const std::vector<BoxTree::Node>& nodes = tree_.nodes();
   double highest_m = -1e300;
-  std::uint32_t stack[128];  // nodes are halved by count: at most 32 levels, one waiting child each
+  std::uint32_t stack[128];  // nodes are halved by count: at most 32 levels, with one waiting child each
   int waiting = 0;
   if (!nodes.empty()) stack[waiting++] = 0;
   while (waiting > 0) {

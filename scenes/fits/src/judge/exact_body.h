@@ -32,19 +32,19 @@ class ExactBody {
 
  private:
   OverlapMesh overlap_;
-  BoxTree tree_;  ///< of the triangles
+  BoxTree tree_;  ///< tree of the triangles
 };
 
 /// The measure of a pair: depth of the overlap, or gap.
 struct PairMeasure {
-  double depth_m = 0;       ///< deepestOverlap() with sheets; negative: the bodies are apart by this gap
+  double depth_m = 0;  ///< depth by deepestOverlap() with sheets; negative: the bodies are apart by this gap
   Vec3 p_W = Vec3::Zero();  ///< the deepest point; not set if the bodies are apart
-  Vec3 n_W = Vec3::Zero();  ///< unit direction from the nearest point of a to that of b; zero if not known
+  Vec3 n_W = Vec3::Zero();  ///< unit direction from a's nearest point to b's nearest point; zero if not known
   std::size_t work = 0;     ///< work that was done, in the unit of Overlap::work
 };
 
-/// Measures a pair. The gap is a lower bound of the distance: smaller by up to a fifth or kOverlapCertain_m,
-/// and at most near_m.
+/// Measures a pair. The gap is a lower bound of the distance: smaller than the distance by up to a fifth or
+/// kOverlapCertain_m, and at most near_m.
 PairMeasure measurePair(const ExactBody& a, const Pose& X_WA, const ExactBody& b, const Pose& X_WB,
                         double near_m);
 

@@ -40,8 +40,8 @@ bool MotionJudge::areApartAlong(PairPath& path, const Vec3& n_A, double from, do
   return true;
 }
 
-/// Whether a direction separates the hulls during the interval. Tries the direction that separated them last,
-/// then the axes of both bodies at the middle of the interval.
+/// Whether a direction separates the hulls during the interval. Tries the direction that separated the hulls
+/// last, then the axes of both bodies at the middle of the interval.
 bool MotionJudge::areHullsApart(PairPath& path, double from, double to, double enough_m) {
   const auto last = direction_A_.find(path.pair);
   if (last != direction_A_.end() && areApartAlong(path, last->second, from, to, enough_m)) return true;

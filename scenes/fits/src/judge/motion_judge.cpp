@@ -11,15 +11,15 @@ namespace vps::scenes {
 
 namespace {
 
-/// Credit at the start. The passage of one body through another takes about fifty measures of some ten units
-/// each.
+/// Budget of work (the credit) at the start. The passage of one body through another takes about fifty
+/// measures of some ten units each.
 constexpr double kFirstCredit = 50e3;
-/// Greatest credit that is saved for later searches.
+/// Greatest budget of work that is saved for later searches.
 constexpr double kMostCredit = 200e3;
-/// A search may spend this share of the credit, or the credit that its steps gave if that is more. The rest
-/// is kept for later searches, in which a body may pass through another one.
+/// A search may spend this share of the budget of work, or the work that its steps added if that is more. The
+/// rest of the budget is kept for later searches, in which a body may pass through another one.
 constexpr double kShareOfCredit = 0.25;
-/// Share of a search's credit for proofs that surfaces do not meet, since such proofs may fail.
+/// Share of a search's budget of work for proofs that surfaces do not meet, since such proofs may fail.
 constexpr double kShareOfProofs = 0.25;
 
 Box unionOf(Box a, const Box& b) {
@@ -33,10 +33,10 @@ Box unionOf(Box a, const Box& b) {
 struct MotionJudge::Stretch {
   std::size_t path;
   double from, to;      ///< ends of the interval, counted in steps
-  double from_m, to_m;  ///< depth at the ends; an upper bound where it was not measured
+  double from_m, to_m;  ///< depth at the ends; an upper bound where the depth was not measured
   bool is_from_measured, is_to_measured;
   double bound_m = 0;                           ///< upper bound of the depth within the interval
-  bool operator<(const Stretch& other) const {  // order: the greatest bound first, then the earliest
+  bool operator<(const Stretch& other) const {  // order: the greatest bound first, then the earliest interval
     if (bound_m != other.bound_m) return bound_m < other.bound_m;
     return path != other.path ? path > other.path : from > other.from;
   }
@@ -195,7 +195,7 @@ void MotionJudge::searchPaths(std::vector<PairPath>& paths, const std::atomic<bo
     const PairPath& path = paths[stretch.path];
     const double travel_m = path.travelAt(stretch.to) - path.travelAt(stretch.from);
     // The depth at an end that was not measured is at most the depth at the other end plus the travel between
-    // them.
+    // the two ends.
     stretch.bound_m = std::min({0.5 * (stretch.from_m + stretch.to_m + travel_m), stretch.from_m + travel_m,
                                 stretch.to_m + travel_m, mostDepth_m(path.pair)});
     if (stretch.bound_m > enough_m(path.pair)) waiting.push(stretch);

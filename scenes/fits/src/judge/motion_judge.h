@@ -19,7 +19,7 @@ struct PairPath;
 /// A body whose motion is judged.
 struct MovingBody {
   Box box_P;
-  Vec3 center_P = Vec3::Zero();  ///< centre of mass, about which it turns within a step
+  Vec3 center_P = Vec3::Zero();  ///< centre of mass, about which the body turns within a step
   bool is_fixed = false;
   /// Makes the body's exact model; called when the body first comes near another one.
   std::function<std::shared_ptr<const ExactBody>()> make;
@@ -43,10 +43,10 @@ struct DeepestOverlap {
 /// than the tolerance, along a direction that is fixed in one of the bodies; sliding and rolling on a convex
 /// body therefore cost little. The second kind are intervals in which no two triangles of the bodies meet, if
 /// the bodies are apart at one end of the interval. A ball that flies along a bore, inside the bore's hull,
-/// is such a case: its facets only have to pass the facets near it.
+/// is a case of the second kind: the ball's facets only have to pass the facets near the ball.
 ///
-/// The cost is bounded by counts: each step gives a credit of work, and intervals that are left when the
-/// credit is spent enter bound_m(). The same input gives the same bits.
+/// The cost is bounded by counts: each step adds work to a budget (the credit), and intervals that are left
+/// when the budget is spent enter bound_m(). The same input gives the same bits.
 class MotionJudge {
  public:
   using Pair = std::pair<std::size_t, std::size_t>;  ///< numbers of two bodies in ascending order
@@ -54,26 +54,26 @@ class MotionJudge {
   /// @param X_WP pose of each body at the start
   MotionJudge(std::vector<MovingBody> bodies, const std::vector<Pose>& X_WP, double time_s);
 
-  /// Tolerance of the search: while there is credit, no depth is missed that exceeds the greatest depth found
-  /// by more than this.
+  /// Tolerance of the search: while the budget of work lasts, no depth is missed that exceeds the greatest
+  /// depth found, depth_m, by more than this tolerance.
   static double toleranceOf(double depth_m) { return 1e-6 + depth_m / 50; }
 
-  /// Adds a step that ends at these poses. After every kSteps steps they are searched together.
+  /// Adds a step that ends at these poses. After every kSteps steps, these steps are searched together.
   /// @param credit  work that may be spent, in the unit of Overlap::work
   void addStep(double time_s, const std::vector<Pose>& X_WP, double credit,
                const std::atomic<bool>* stop = nullptr);
-  /// Puts the bodies at these poses without judging the motion to them.
+  /// Puts the bodies at these poses without judging the motion to these poses.
   void place(double time_s, const std::vector<Pose>& X_WP);
   /// Searches the steps that were added since the last search.
   void search(const std::atomic<bool>* stop = nullptr);
-  /// Sets the depth of a pair at the end of the last step that was searched, if it was measured elsewhere.
-  /// The search continues from this depth.
+  /// Sets the depth of a pair at the end of the last step that was searched, if the caller measured the
+  /// depth. The search continues from this depth.
   void setDepth(const Pair& pair, double depth_m, const Vec3& p_W);
 
   /// Sets the least depth that matters: smaller depths are not searched for.
   void setLeast(double depth_m) { least_m_ = depth_m; }
-  /// Allows overlaps of this pair up to depth_m: they do not count in deepest(). The caller ends this with
-  /// forbid().
+  /// Allows overlaps of this pair up to depth_m: such overlaps do not count in deepest(). The caller ends the
+  /// permission with forbid().
   void allow(const Pair& pair, double depth_m);
   void forbid(const Pair& pair) { allowed_m_.erase(pair); }
 
@@ -85,8 +85,8 @@ class MotionJudge {
   [[nodiscard]] const DeepestOverlap& deepestOfAll() const { return deepest_of_all_; }
   /// Upper bound of the depth along all steps that were searched.
   [[nodiscard]] double bound_m() const;
-  /// False if the credit did not suffice; bound_m() is then the bound of an interval that was not divided
-  /// further.
+  /// False if the budget of work did not suffice; bound_m() is then the bound of an interval that was not
+  /// divided further.
   [[nodiscard]] bool isSearched() const { return left_m_ == 0 || left_m_ < bound_m(); }
   [[nodiscard]] std::size_t measured() const { return measured_; }  ///< number of pair measures so far
 
@@ -117,7 +117,7 @@ class MotionJudge {
   void searchPaths(std::vector<PairPath>& paths, const std::atomic<bool>* stop);
 
   std::vector<MovingBody> bodies_;
-  std::vector<std::shared_ptr<const ExactBody>> exact_;  ///< by body; null until it is needed
+  std::vector<std::shared_ptr<const ExactBody>> exact_;  ///< by body; null until the body's model is needed
   std::vector<std::vector<Pose>> X_WP_;  ///< by body, at the ends of the steps; one pose for a fixed body
   std::vector<double> time_s_;
   std::map<Pair, double> depth_m_;  ///< pairs that are near: upper bound of the depth at the last moment

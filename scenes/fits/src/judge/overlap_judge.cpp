@@ -71,7 +71,7 @@ PointDepth deepestPoint(const JudgedBody& solid, const JudgedBody& other, const 
   std::vector<double> depths(candidates.contacts.size());
   tbb::parallel_for(std::size_t{0}, depths.size(), [&](std::size_t i) {
     const Contact& contact = candidates.contacts[i];
-    // Below its band the map has no value, so that it does not bound the search.
+    // Below its band the map has no value, so that the map does not bound the search.
     const bool is_in_band = std::abs(contact.distance_m) < solid.model->map->band_m();
     const double most_m = is_in_band ? std::abs(contact.distance_m) + solid.model->map->sampleError_m() : 1e3;
     depths[i] = -signedDistance(solid, X_SO * other.model->shell->points[contact.id], most_m);
@@ -110,7 +110,7 @@ JudgedBody makeJudgedBody(std::shared_ptr<const PartModel> model) {
     for (const std::uint32_t end : edge) is_curved[end] = true;
   for (const auto& [a, b] : sharpEdges(mesh, kSharp_rad)) {
     edges.push_back({mesh.vertices[a], mesh.vertices[b]});
-    is_curved[a] = is_curved[b] = false;  // the edge's measure covers its ends
+    is_curved[a] = is_curved[b] = false;  // the measure along an edge covers the edge's ends
   }
   std::vector<Vec3> vertices;
   for (std::size_t i = 0; i < is_curved.size(); ++i)

@@ -13,13 +13,13 @@
 
 namespace vps::scenes {
 
-/// A sharp edge of a part, in its frame.
+/// A sharp edge of a part, in the part's frame.
 struct SharpEdge {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
 };
 
 /// A part as the judge uses it. The solid decides whether a point is inside; the map only proves that regions
-/// are outside, and the shell gives sample points on faces. The model must have all three.
+/// are outside, and the shell gives sample points on faces. The model must have solid, map and shell.
 struct JudgedBody {
   std::shared_ptr<const PartModel> model;
   std::shared_ptr<const std::vector<SharpEdge>> edges;  ///< edges at which faces meet at more than 20 degrees
@@ -66,7 +66,7 @@ class OverlapJudge {
   [[nodiscard]] Penetration deepest(const JudgedBody& moving, const Pose& X_WP) const;
 
   /// The depth by the voxmaps, at the shell points of both parts [m]; 0 if no point is inside. At sharp edges
-  /// it can be wrong by a voxel, so it serves only to rank poses. O(points visited).
+  /// this depth can be wrong by a voxel, so it serves only to rank poses. O(points visited).
   [[nodiscard]] double fieldDepth_m(const JudgedBody& moving, const Pose& X_WP) const;
 
  private:

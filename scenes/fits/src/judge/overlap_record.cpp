@@ -15,9 +15,8 @@ namespace {
 
 constexpr std::size_t kSuspects = 50;  ///< number of poses with the deepest contacts that are always judged
 
-/// Work allowed for the search between two samples, in the unit of Overlap::work. The run is over, so each
-/// search can run to its end, which takes about fifty measurements of some ten units each; this is only an
-/// upper bound.
+/// Upper bound of the work of the search between two samples, in the unit of Overlap::work. The run is over,
+/// so each search can run to its end, which takes about fifty measurements of some ten units each.
 constexpr double kCredit = 200e3;
 
 std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& moving) {
@@ -33,8 +32,8 @@ std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& mo
   return bodies;
 }
 
-/// OverlapVerdict::unsearched_m. A search with enough credit leaves no interval above its tolerance; the
-/// result is then 0.
+/// OverlapVerdict::unsearched_m. A search with a sufficient budget of work leaves no interval above its
+/// tolerance; the result is then 0.
 double unsearched_m(const MotionJudge& motions, double least_m) {
   const double decided_m = std::max(motions.deepestOfAll().depth_m, least_m);
   const double bound_m = motions.bound_m();

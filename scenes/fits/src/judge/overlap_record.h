@@ -19,8 +19,9 @@ struct OverlapSample {
   bool follows = true;
 };
 
-/// Motion within a physics step above which overlaps between its poses are searched for. Such an overlap is
-/// at most half as deep as the part's motion within the step. A hand moves by less than this limit in a step.
+/// Motion within a physics step above which overlaps between the poses of the step are searched for. An
+/// overlap between two poses is at most half as deep as the part's motion within the step. A hand moves by
+/// less than this limit in a step.
 inline constexpr double kFast_m = 0.1e-3;
 
 /// The deepest penetration of a run.
@@ -28,8 +29,8 @@ struct OverlapVerdict {
   Penetration worst;
   double time_s = 0;
   std::size_t poses_judged = 0;
-  /// 0 if each search between two samples ran to its end. Else an upper bound of the depth that the other
-  /// searches may have missed.
+  /// 0 if each search between two samples ran to its end. Else an upper bound of the depth that searches with
+  /// an early end may have missed.
   double unsearched_m = 0;
 };
 

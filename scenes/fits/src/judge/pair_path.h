@@ -20,12 +20,12 @@ inline double chordsOf(double sagitta_m) {
 /// The relative motion of two bodies along some steps.
 struct PairPath {
   std::pair<std::size_t, std::size_t> pair;
-  std::size_t a, b;               ///< `a` is the fixed body of the pair, or else the larger one
+  std::size_t a, b;               ///< `a` is the fixed body of the pair, or else the larger body
   std::vector<double> travel_m;   ///< by moment: relative travel since the first moment
   std::vector<double> sagitta_m;  ///< by step: see RelativeMotion
   double end_depth_m = 0;         ///< upper bound of the depth at the last moment
-  int searches = 0;               ///< failed searches for a direction that separates the hulls
-  int failures = 0;               ///< failed less successful proofs that the surfaces do not meet
+  int searches = 0;               ///< number of failed searches for a direction that separates the hulls
+  int failures = 0;               ///< number of failed minus successful proofs that the surfaces do not meet
 
   [[nodiscard]] double travelAt(double step) const {
     const auto i = std::min(static_cast<std::size_t>(step), travel_m.size() - 1);

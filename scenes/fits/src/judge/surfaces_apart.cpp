@@ -16,11 +16,11 @@ namespace {
 /// Number of failed proofs of a pair, less the successful ones, after which no further proof is tried.
 constexpr int kFailures = 3;
 /// Greatest number of boxes that are tested for one interval. A ball of 960 triangles that passes a bore of
-/// 384 triangles takes 10,000 to 20,000.
+/// 384 triangles takes 10,000 to 20,000 tests of boxes.
 constexpr std::size_t kMostBoxes = 40000;
 
-/// A part of the motion, in the frame of a. Each point of b moves along a line and deviates from it by at
-/// most bend_m.
+/// A piece of the relative motion, in the frame of a. Each point of b moves along a line and deviates from it
+/// by at most bend_m.
 struct Chord {
   Pose from_AB, to_AB;
   double bend_m = 0;
@@ -63,7 +63,8 @@ bool areOnBothSides(const Vec3& n, const Triangle& fixed, const std::array<Trian
 bool areApart(const Triangle& fixed, const std::array<Triangle, 2>& moving, double apart_m) {
   const auto isAlong = [&](const Vec3& n) { return areOnBothSides(n, fixed, moving, apart_m); };
   if (isAlong(normalOf(fixed)) || isAlong(normalOf(moving[0])) || isAlong(normalOf(moving[1]))) return true;
-  // A triangle that passes a rim, or passes through a ring, is separated from it by a plane along its path.
+  // A triangle that passes a rim, or passes through a ring, is separated from the rim or ring by a plane
+  // along its path.
   const Vec3 way = middleOf(moving[1]) - middleOf(moving[0]);
   for (const Triangle& t : {fixed, moving[0], moving[1]})
     for (std::size_t v = 0; v < 3; ++v)

@@ -15,7 +15,7 @@ namespace vps::scenes {
 
 /// A body that may move; it turns about the point at_W.
 struct LooseBody {
-  Vec3 at_W = Vec3::Zero();  ///< in the middle of the body as drawn
+  Vec3 at_W = Vec3::Zero();  ///< point in the middle of the body as drawn
   double arm_m = 0;   ///< half of the body's diagonal, by which a rotation is multiplied to give a length
   double most_m = 0;  ///< limit of each of the body's six numbers
 };
@@ -34,16 +34,17 @@ struct GapRow {
 /// [m].
 using Motions = Eigen::VectorXd;
 
-/// The parameter e of leastMotion() for a search. It leaves an error of a millionth of the motion, far below
-/// the precision of depths.
+/// The parameter e of leastMotion() for a search. This value leaves an error of a millionth of the motion,
+/// far below the precision of depths.
 inline constexpr double kSearchMotionCost = 1e-6;
 
 /// The motion with the least sum of squares for which no gap is negative, to first order. If no such motion
-/// exists, the result has the least sum of squares of the negative gaps. The amount by which a number exceeds
-/// most_m counts as a negative gap.
+/// exists, the result has the least sum of squares of the negative gaps. The amount by which a number of a
+/// motion exceeds most_m counts as a negative gap.
 ///
 /// Minimises e |x|^2 / 2 + sum min(0, gap)^2 / 2 by Newton's method on the negative gaps, which ends after
-/// finitely many steps. A gap stays negative by about e times the motion. O(rows + bodies^3) for each step.
+/// finitely many steps. A gap stays negative by about e times the motion. O(rows + bodies^3) for each step of
+/// Newton's method.
 /// @param from motions at which the gaps of the rows were measured
 /// @param closed_m receives for each row the amount by which its gap stays negative, else 0
 Motions leastMotion(std::span<const GapRow> rows, std::span<const LooseBody> bodies, const Motions& from,

@@ -25,7 +25,7 @@ struct Motion {
     const Mat3 R = rotationFromVector(s * direction);
     return {R, center - R * center + s * forward_m * direction};
   }
-  /// The same motion in a frame F, given the pose of its own frame in F.
+  /// The same motion in a frame F, given the pose in F of the frame of this motion.
   [[nodiscard]] Motion in(const Pose& X_F) const {
     return {X_F.R * direction, X_F * center, is_turn, forward_m};
   }

@@ -14,8 +14,8 @@ constexpr int kMostSteps = 400;
 /// Limit of the steps of a rotation. A whole turn in a bore of n facets takes about 2 n steps, and more where
 /// the clearance is near the facets' chord error.
 constexpr int kMostStepsOfTurn = 4000;
-/// Length of the first piece of a motion; each later piece is four times as long. Where a contact is near,
-/// only near facets are examined.
+/// Length of the first piece of a motion; each later piece is four times as long. With short first pieces,
+/// only near facets are examined where a contact is near.
 constexpr double kFirstStep_m = 0.1e-3;
 
 /// The greatest depth to which the facets of a pair penetrate each other as drawn, up to crossing_m, plus
@@ -30,7 +30,8 @@ double restOf(const PlacedSurface& part, const PlacedSurface& held, const Pose& 
   return MotionSearch::kRest_m + std::min(needed_m, crossing_m);
 }
 
-/// The distance after which a box that moves along d reaches another box; infinite if it passes by.
+/// The distance after which a box that moves along d reaches another box; infinite if the moving box passes
+/// by.
 double entry(const Box& moving, const Box& held, const Vec3& d) {
   double first = 0, last = kMotionSearchForever;
   for (int axis = 0; axis < 3; ++axis) {
@@ -78,11 +79,11 @@ bool passBeside(const PartSurface& held, std::uint32_t k, const PartSurface& mov
   const auto facets = [](const PartSurface& of, std::uint32_t node) {
     return of.tree().nodes()[node].end - of.tree().nodes()[node].first;
   };
-  constexpr std::uint32_t kFewPairs = 4;  // so few pairs are tested faster one by one
+  constexpr std::uint32_t kFewPairs = 4;  // up to so many pairs of facets are tested faster one by one
   const std::uint32_t of_held = facets(held, k), of_moving = facets(moving, i);
   if (std::max(of_held, of_moving) > PartSurface::kFacetsOfPatch || of_held * of_moving <= kFewPairs)
     return false;
-  const auto isParted = [&](const Vec3& n_H) {  // the held part below the plane, the moving part above it
+  const auto isParted = [&](const Vec3& n_H) {  // held part below the plane, moving part above the plane
     const Vec3 n_M = X_HM.R.transpose() * n_H;
     return n_H.dot(X_HM.p) - moving.highest_m(i, -n_M) >= held.highest_m(k, n_H) - rest_m;
   };
@@ -207,7 +208,7 @@ double MotionSearch::pairStops(const MovingPair& pair, std::uint32_t moving, std
 
 double MotionSearch::step(const Near& near, const std::optional<Turning>& turning, const Piece& piece,
                           const PassingFacets* passing, SearchWork* work, Reach& reach) const {
-  // These are no structured bindings, because clang 14 does not let a lambda capture one.
+  // Structured bindings are not used, because clang 14 does not let a lambda capture a structured binding.
   const Motion& motion_H = piece.motion_H;
   const Pose& X_HM = piece.X_HM;
   const double most = piece.most;
@@ -307,7 +308,7 @@ std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
                                              const std::array<const PassingFacets*, 2>& passing) const {
   const std::optional<Turning> turning = turningOf(motion);
   const std::vector<Near> near = nearOf(motion, most);
-  std::vector<Near> near_back;  // for a translation; those of a rotation are the same
+  std::vector<Near> near_back;  // for a translation; a rotation has the same held parts in both directions
   if (!turning) near_back = nearOf(motion.reversed(), most);
   return {reach(motion, most, near, turning, passing[0], nullptr),
           reach(motion.reversed(), most, turning ? near : near_back, turning, passing[1], nullptr)};
@@ -351,8 +352,8 @@ Reach MotionSearch::backedOff(Reach reach, const Motion& motion_W, double speed)
   const Motion motion = motion_W.in(held.part->X_WP.inverse());
   const MovingPair pair{*part_.surface, *held.part->surface, motion.at(reach.s) * held.X_HM, motion,
                         held.rest_m};
-  // A contact that closes more slowly than this is a grazing contact, whose place is uncertain by more than
-  // the rest depth.
+  // A contact that closes more slowly than a tenth of the speed is a grazing contact, whose place is
+  // uncertain by more than the rest depth.
   const double closing =
       std::max(closingSpeed(pair, reach.by.moving_facet, reach.by.held_facet), 0.1 * speed);
   reach.rate = contactRate(pair, reach.by.moving_facet, reach.by.held_facet);

@@ -17,13 +17,13 @@ namespace vps::scenes {
 
 /// Two facets that stopped a motion.
 struct Blocker {
-  std::size_t held = 0;  ///< index in MotionSearch's list
+  std::size_t held = 0;  ///< index in MotionSearch's list of held parts
   std::uint32_t moving_facet = 0, held_facet = 0;
 };
 
 /// How far a part moves.
 struct Reach {
-  double s = 0;  ///< parameter of the motion that was reached, at most the one asked for
+  double s = 0;  ///< parameter of the motion that was reached, at most the requested one
   bool is_stopped = false;
   /// With is_stopped: the search ended after too many steps; the part may reach farther.
   bool is_given_up = false;
@@ -31,7 +31,7 @@ struct Reach {
   double rate = 1;  ///< contactRate() of the two facets that stopped the motion
 };
 
-/// Parts that do not move, and a tree of their boxes in the world. The parts must outlive it.
+/// Parts that do not move, and a tree of their boxes in the world. The parts must outlive the object.
 struct StandingParts {
   explicit StandingParts(std::vector<const PlacedSurface*> of_parts);
   std::vector<const PlacedSurface*> parts;
@@ -41,7 +41,7 @@ struct StandingParts {
 /// Facets that a motion search may skip: facets of the moving part or of a held part that cannot touch the
 /// other part.
 struct PassingFacets {
-  std::size_t held = 0;  ///< index in MotionSearch's list
+  std::size_t held = 0;  ///< index in MotionSearch's list of held parts
   bool is_of_moving = false;
   /// By facet and by node of the part's tree: 1 if the facet, or all facets of the node, can be skipped.
   std::vector<std::uint8_t> facets, nodes;
@@ -81,16 +81,16 @@ class MotionSearch {
                const std::vector<double>& crossing_m, CrossingDepth depth = CrossingDepth::AsDrawn);
 
   /// @param motion in the world
-  /// @param work counts the work; the motion ends where the work is spent. Null: only the number of steps is
-  /// limited
+  /// @param work counts the work; the motion ends where the work is spent. If null, only the number of steps
+  /// is limited
   [[nodiscard]] Reach reach(const Motion& motion, double most, SearchWork* work = nullptr) const;
   /// The reach of the motion and of its reverse.
   /// @param passing facets to skip, for each of the two motions; null: none
   [[nodiscard]] std::array<Reach, 2> reachBoth(const Motion& motion, double most,
                                                const std::array<const PassingFacets*, 2>& passing = {}) const;
-  /// Whether the two facets alone stop the motion.
+  /// Whether the blocker's two facets alone stop the motion.
   [[nodiscard]] bool isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const;
-  /// Greatest distance of the two facets, added, from the curved faces that they approximate.
+  /// Sum of the greatest distances of the blocker's two facets from the curved faces that they approximate.
   [[nodiscard]] double chordOf_m(const Blocker& blocker) const;
   [[nodiscard]] const PlacedSurface& held(std::size_t index) const { return *held_->parts[index]; }
   /// Index of the held part with this name, which must exist.
@@ -108,7 +108,7 @@ class MotionSearch {
   struct Near {
     std::size_t index;
     Held held;
-    std::optional<AxisExtents> turning;  ///< set for a rotation
+    std::optional<AxisExtents> turning;  ///< extents of the held part; set for a rotation only
   };
   /// For a rotation: its axis, and the extents of the moving part around it.
   struct Turning {
@@ -130,12 +130,13 @@ class MotionSearch {
                             SearchWork* work) const;
   [[nodiscard]] Reach backedOff(Reach reach, const Motion& motion_W, double speed) const;
   /// The held parts whose boxes may come near during the motion, in ascending order. A rotation and its
-  /// reverse have the same parts. O(log n + parts found); for a rotation also O(their triangles).
+  /// reverse have the same parts. O(log n + parts found); for a rotation also O(triangles of the parts
+  /// found).
   [[nodiscard]] std::vector<Near> nearOf(const Motion& motion, double most) const;
   /// Greatest distance of the part's box from the centre of a rotation.
   [[nodiscard]] double farthestFrom(const Motion& turn, double most) const;
   /// How far the part moves on the piece before a facet of the held part stops it. `reach` receives the
-  /// facets that stop it, and whether the search was given up.
+  /// facets that stop the part, and whether the search was given up.
   double step(const Near& near, const std::optional<Turning>& turning, const Piece& piece,
               const PassingFacets* passing, SearchWork* work, Reach& reach) const;
   /// How far one pair of facets moves on the piece before the facets touch.

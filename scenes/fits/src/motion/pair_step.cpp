@@ -53,7 +53,7 @@ class Step {
     const Vec3 v = pair_.motion.velocity(gap_.p_a);
     const double of_held = std::max(0.0, -v.dot(pair_.held.normal(held_))),
                  of_moving = std::max(0.0, v.dot(pair_.X_HM.R * pair_.moving.normal(moving_)));
-    if (gap_.distance_m > kDirection_m) {  // below, the triangles may cross at any feature by rounding
+    if (gap_.distance_m > kDirection_m) {  // below this distance, rounding decides on the feature
       if (gap_.feature_b == 0) return of_held;
       if (gap_.feature_a == 0) return of_moving;
       if (const Vec3 n = acrossEdges(); !n.isZero(0)) return std::abs(n.dot(v));

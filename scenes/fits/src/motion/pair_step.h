@@ -29,10 +29,10 @@ inline std::optional<Vec3> besideMotion(const Vec3& n, const Vec3& d) {
   return (n - facing * d).normalized();
 }
 
-/// A step during which the triangles do not penetrate each other by more than the rest depth. It is the
-/// longest step for which one of a few planes separates the triangles, each part being on the plane's outer
-/// side. The step is 0 if the triangles touch and would penetrate, and exact where a face, an edge or a
-/// corner stops the other. Takes 1 us.
+/// A step during which the triangles do not penetrate each other by more than the rest depth. The result is
+/// the longest step for which one of a few planes separates the triangles, each part being on the plane's
+/// outer side. The step is 0 if the triangles touch and would penetrate, and exact where a face, an edge or a
+/// corner of one triangle stops the other triangle. Takes 1 us.
 double safeStep(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
 
 /// The rate at which the triangles approach along the normal of one of them, at their nearest points, per
@@ -40,8 +40,8 @@ double safeStep(const MovingPair& pair, std::uint32_t moving, std::uint32_t held
 double closingSpeed(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
 
 /// The rate at which triangles in contact approach along the contact normal, per unit of the motion; not
-/// negative. The contact normal is that of the touched face, or the common perpendicular of two edges. If it
-/// is unknown, the result is the lesser of the rates along the normals of both triangles.
+/// negative. The contact normal is that of the touched face, or the common perpendicular of two edges. If the
+/// normal is unknown, the result is the lesser of the rates along the normals of both triangles.
 double contactRate(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
 
 /// The depth to which the triangles penetrate each other: the least depth over the planes of the facets and

@@ -43,8 +43,8 @@ PlayFrame playFrame(const PlacedSurface& part, const std::vector<CheckedFit>& fi
   const CheckedFit* longest = nullptr;
   for (const CheckedFit& fit : fits) {
     if (!isOf(fit, part) || fit.kind == FitKind::Key) continue;
-    // A part is guided by the fits in which it is the shaft. Fits in which it is the bore may be many and
-    // count less.
+    // A part is guided by the fits in which it is the shaft. Fits in which the part is the bore may be many
+    // and count less.
     const bool is_better =
         longest == nullptr || std::pair(fit.shaft == part.name, fit.length_m) >
                                   std::pair(longest->shaft == part.name, longest->length_m);

@@ -35,8 +35,8 @@ struct AxisPlay {
 AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m,
                    double error_m);
 
-/// Unit directions in the world in which the part can be removed in a straight line. Tried are the axes of
-/// the frame, the axes of the part's fits, and 42 directions all around.
+/// Unit directions in the world in which the part can be removed in a straight line. The search tries the
+/// axes of the frame, the axes of the part's fits, and 42 directions all around.
 std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part, const PlayFrame& frame,
                           const std::vector<CheckedFit>& fits, double leave_m);
 

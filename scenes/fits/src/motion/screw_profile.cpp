@@ -14,7 +14,7 @@ namespace {
 constexpr double kWholeTurn_rad = 2 * std::numbers::pi;
 constexpr int kBins = 1024;
 /// A triangle that spans a greater angle, or whose radii have a greater ratio, is halved, at most
-/// kMostHalvings times. Triangles on the axis reach this limit.
+/// kMostHalvings times. Triangles on the axis reach the limit of halvings.
 constexpr double kMostTurn_rad = 0.3, kMostRatio = 1.5;
 constexpr int kMostHalvings = 16;
 
@@ -33,9 +33,9 @@ double farthest_m(const PlacedSurface& part, const Vec3& ahead_W) {
 
 }  // namespace
 
-/// A triangle, described by radius and phase of its corners. Between the corners both are nearly linear. The
-/// radius is at most its linear interpolation, since the distance from a line is convex, and at least
-/// `shrink` times the interpolation. The phase deviates from its interpolation by `slack_m` at most.
+/// A triangle, described by radius and phase of its corners. Between the corners, radius and phase are nearly
+/// linear. The radius is at most its linear interpolation, since the distance from a line is convex, and at
+/// least `shrink` times the interpolation. The phase deviates from its interpolation by `slack_m` at most.
 struct ScrewProfile::Facet {
   double radius_m[3], phase_m[3];
   double shrink = 0, slack_m = 0;
@@ -83,16 +83,16 @@ ScrewProfile::Facet ScrewProfile::seen(const Triangle& triangle_W) const {
   // A mean of three vectors of lengths a_i, at angles of at most s to each other, with weights w_i, has the
   // squared length sum w_i w_j a_i a_j cos s_ij >= (sum w_i a_i)^2 (1 - 2/3 (1 - cos s)).
   out.shrink = std::sqrt(1 - 2.0 / 3 * (1 - std::cos(span_rad)));
-  // The angle of this mean is the mean of the angles with weights w_i a_i, up to the deviation of the angle
-  // on a chord from the linear one, s^3 / 24 for each of two chords. The weights differ from w_i by up to
-  // (a_max / a_min - 1) / 4 for each of two.
+  // The angle of the mean vector is the mean of the angles with weights w_i a_i, up to the deviation of the
+  // angle on a chord from a linear angle, s^3 / 24 for each of two chords. The weights differ from w_i by up
+  // to (a_max / a_min - 1) / 4 for each of two weights.
   out.slack_m =
       std::abs(screw_.forward_m) * (span_rad * (greatest_m / least_m - 1) / 2 + std::pow(span_rad, 3) / 12);
   return out;
 }
 
 /// Calls visit(bin, least radius, greatest radius) for each bin that the facet's phase may reach, with bounds
-/// of the facet's radius there. Ends when visit returns false, and then returns false.
+/// of the facet's radius there. The loop ends when visit returns false, and the function then returns false.
 template <class Visit>
 bool ScrewProfile::forEachBin(const Facet& facet, Visit visit) const {
   const auto [least, greatest] = std::minmax({facet.radius_m[0], facet.radius_m[1], facet.radius_m[2]});

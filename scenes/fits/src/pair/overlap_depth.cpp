@@ -72,9 +72,9 @@ struct WayOut {
   Vec3 out, q;
 };
 
-/// Divides a piece. At three of four levels, it is cut where two ways out are equally long, or else across
-/// the direction in which the distance changes. Distances often do not change along the other direction, so
-/// that cuts across it would make many small pieces.
+/// Divides a piece. At three of four levels, the piece is cut where two ways out are equally long, or else
+/// across the direction in which the distance changes. Distances often do not change along the perpendicular
+/// direction, so that cuts across the latter would make many small pieces.
 /// @param n normal of the piece's plane
 Halves divided(const SurfacePiece& piece, int level, const Vec3& n, const WayOut& middle,
                const WayOut& other) {
@@ -280,8 +280,8 @@ class TouchSearch {
       if (is_reflex[v] != 0 && isWithin(touched_.mesh().vertices[v], box_T)) addCorner(v);
   }
 
-  /// Adds the touches of a corner. Their directions are in the cone of the normals around the corner, which
-  /// triangles cover.
+  /// Adds the touches of a corner. The directions of such touches are in the cone of the normals around the
+  /// corner; triangles cover the cone.
   void addCorner(std::uint32_t vertex) {
     const std::span<const Vec3> around = touched_.normalsAround(vertex);
     Vec3 middle = Vec3::Zero();
@@ -312,7 +312,7 @@ class TouchSearch {
                     : isOutside(piece_T, n_T, touched_, search_.work);
   }
 
-  /// Whether it is proven that no ball with a greater diameter touches.
+  /// Whether it is proven that no ball with a greater diameter touches the piece.
   bool isSettled(const Touch& touch, double diameter_m) {
     const Cone cone = coneOf(touch);
     if (cone.half_rad >= 1.5) return false;
@@ -329,8 +329,8 @@ class TouchSearch {
     return areCentresNear(touch, cone, radius_m, limit);
   }
 
-  /// Whether a move by at most the radius along one direction takes the centres of all such balls out of a
-  /// solid.
+  /// Whether a move by at most the radius along one direction takes the centres of all balls of a touch out
+  /// of a solid.
   bool areCentresNear(const Touch& touch, const Cone& cone, double radius_m,
                       const SharedBalls::Limit& limit) {
     SurfacePiece centres;
@@ -342,7 +342,7 @@ class TouchSearch {
       centres = {touch.piece[0] - one, touch.piece[1] - one, touch.piece[1] - two, touch.piece[0] - two};
     }
     // The centres for a cone lie on a cylinder or a ball, above the flat piece between the cone's directions
-    // by at most this.
+    // by at most above_m.
     const double above_m = radius_m * (1 - std::cos(cone.half_rad));
     const Vec3 n = touch.directions.size() == 1
                        ? touch.n
@@ -415,8 +415,9 @@ OverlapDepth overlapDepth(const PlacedSurface& a, const PlacedSurface& b, const 
   constexpr double kLeastShare = 1e-4;
   search.certain_m = certain_m(kLeastShare);
   const double in_a_m = DepthSearch(a, b, search).run(), in_b_m = DepthSearch(b, a, search).run();
-  // A ball is no thicker than the smaller box. The finest tolerance is tried first. If its work does not
-  // suffice, tolerances from coarse to fine follow, so that a bound is proven in any case.
+  // A ball is no thicker than the smaller box. The finest tolerance is tried first. If the limit of work does
+  // not suffice for the finest tolerance, tolerances from coarse to fine follow, so that a bound is proven in
+  // any case.
   double thickness_m = std::min(a.surface->box().size().minCoeff(), b.surface->box().size().minCoeff());
   TouchSearch of_a(a, b, search), of_b(b, a, search);
   for (const double share : {kLeastShare, 1.0, 0.1, 0.01, 1e-3}) {

@@ -25,8 +25,8 @@ struct Flat {
   }
 };
 
-/// Clips segment pq, which lies in the plane of the triangle, to the triangle. Returns false if nothing is
-/// left.
+/// Clips segment pq, which lies in the plane of the triangle, to the triangle. Returns false if nothing of
+/// the segment is left.
 bool clip(const Flat& in, Vec3& p, Vec3& q) {
   const auto [from, to] = sharesWithin(in.t, in.n, p, q);
   if (!(from < to)) return false;

@@ -21,25 +21,25 @@ struct SurfaceGap {
 SurfaceGap surfaceGap(const PartSurface& a, const PartSurface& b, const Pose& X_AB, double most_m);
 
 /// Balls that lie inside both of two placed solids, in the frame of the first solid. Both solids must outlive
-/// it.
+/// the object.
 class SharedBalls {
  public:
   SharedBalls(const PlacedSurface& a, const PlacedSurface& b);
 
   /// Radius of the greatest ball around a point that lies in both solids. For a point outside one of the
-  /// solids it is negative: minus the distance from that solid. 1-Lipschitz.
+  /// solids the result is negative: minus the distance from that solid. 1-Lipschitz.
   [[nodiscard]] double radiusAt(const Vec3& p_A) const;
   /// The nearer of the two surfaces, which limits the ball around a point.
   struct Limit {
     double radius_m;
     bool is_of_b;
-    Vec3 out, q;  ///< unit direction out of that solid; nearest point of its surface
+    Vec3 out, q;  ///< unit direction out of the limiting solid; nearest point of its surface
   };
   [[nodiscard]] Limit limitAt(const Vec3& p_A) const;
-  /// Moves a ball to where no small displacement makes it larger. depth_m of the result is its radius.
+  /// Moves a ball to where no small displacement makes it larger. depth_m of the result is the ball's radius.
   [[nodiscard]] Overlap grownFrom(const Vec3& p_A, double step_m) const;
-  /// The largest ball found from the points of a grid; a larger one may exist. depth_m of the result is its
-  /// radius, 0 if there is none.
+  /// The largest ball found from the points of a grid; a larger ball may exist. depth_m of the result is the
+  /// ball's radius, or 0 if no ball is found.
   [[nodiscard]] Overlap greatest() const;
 
  private:
@@ -60,8 +60,8 @@ struct OverlapDepth {
   bool is_thickness = false;  ///< depth_m is the ball's diameter
 };
 
-/// Measures the depth. `most_m` exceeds `depth_m` by the greater of 0.1 um and a ten-thousandth of the depth,
-/// or by more if the search ended at its limit of work.
+/// Measures the depth of the overlap. `most_m` exceeds `depth_m` by the greater of 0.1 um and a
+/// ten-thousandth of the depth, or by more if the search ended at its limit of work.
 ///
 /// The method is branch and bound over both surfaces. A piece of a facet is settled if it cannot contain more
 /// than the depth found so far plus this tolerance (together "enough"), for one of these reasons:
@@ -85,7 +85,7 @@ OverlapDepth overlapDepth(const PlacedSurface& a, const PlacedSurface& b, const 
 /// An overlap that does not depend on how curved faces were divided into facets.
 struct CertainOverlap {
   double depth_m = 0;  ///< 0: no overlap is certain
-  double error_m = 0;  ///< error of the depth at its place; less than the depth
+  double error_m = 0;  ///< error of the depth at the measured point; less than the depth
   Vec3 p_W = Vec3::Zero();
 };
 
@@ -100,9 +100,9 @@ CertainOverlap certainOverlap(const PlacedSurface& a, const PlacedSurface& b);
 struct OverlapVolume {
   double volume_m3 = 0;
   double area_m2 = 0;  ///< area of the shared volume's surface
-  /// Bound of the error for the meshes as they are. It consists of the shift by kVolumeShift_m, and of the
-  /// amount by which the vector areas of the volume's surface do not sum to zero. A hole of an open mesh adds
-  /// its area times a sixth of the overlap's diagonal.
+  /// Bound of the error for the meshes as they are. The error consists of the shift by kVolumeShift_m, and of
+  /// the amount by which the vector areas of the volume's surface do not sum to zero. A hole of an open mesh
+  /// adds its area times a sixth of the overlap's diagonal.
   double error_m3 = 0;
   double faces_error_m3 = 0;  ///< error because facets deviate from curved faces
 };
@@ -121,7 +121,7 @@ std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface
 /// Bound of the distance of two meshes from their true faces anywhere, added: the greatest distance of facets
 /// from the curved faces that they approximate, widths of cracks, and rounding. The error of a pair's depth
 /// can be smaller, since it counts only the error near the overlap. Infinite if a mesh has no inside or is
-/// not closed, because a depth in it then has no bound.
+/// not closed, because a depth in such a mesh has no bound.
 double meshError_m(const PlacedSurface& a, const PlacedSurface& b);
 
 }  // namespace vps::scenes

@@ -14,10 +14,10 @@ namespace vps::scenes {
 struct Touch {
   static constexpr std::uint32_t kNoVertex = 0xffffffff;
   std::size_t of = 0, above = 0;     ///< indices of the part with the point and of the other part
-  std::uint32_t vertex = kNoVertex;  ///< vertex of the first part's mesh that is the point, if any
+  std::uint32_t vertex = kNoVertex;  ///< the point's index if it is a vertex of part `of`
   Vec3 p_O = Vec3::Zero();           ///< the point, in the frame of its part
   Vec3 q_A = Vec3::Zero();           ///< nearest point of the other part's surface, in the other part's frame
-  Vec3 n_A = Vec3::UnitZ();          ///< outward normal of that surface at q_A, unit
+  Vec3 n_A = Vec3::UnitZ();          ///< outward normal of the other part's surface at q_A, unit
 
   /// Height of the point above the plane; negative below it.
   [[nodiscard]] double gap_m(const Pose& X_WO, const Pose& X_WA) const {
@@ -35,7 +35,8 @@ struct PairTouches {
 };
 
 /// Finds the touches of two parts: the deepest point, and the corners of each part that are deeper than
-/// more_than_m in the other part (at most the 64 deepest). O(corners in the other's box x log triangles).
+/// more_than_m in the other part (at most the 64 deepest). O(corners in the other part's box x log
+/// triangles).
 PairTouches touchesOf(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP, std::size_t a,
                       std::size_t b, double more_than_m);
 

@@ -11,13 +11,13 @@ namespace {
 
 /// How far a body may be from its present place.
 struct BodyReach {
-  double most_m = 0;    ///< greatest displacement of any of its points
+  double most_m = 0;    ///< greatest displacement of any point of the body
   double turn_rad = 0;  ///< greatest turn
 };
 
-/// The contribution of a touch to the mean, without its weight.
+/// The contribution of a touch to the mean of provenOverlap_m(), without the touch's weight.
 struct Bounded {
-  double most_m = 0;  ///< h plus the terms that are not linear in the motion
+  double most_m = 0;  ///< h of provenOverlap_m() plus the terms that are not linear in the motion
   Vec3 n_W = Vec3::Zero(), c_W = Vec3::Zero();
 };
 

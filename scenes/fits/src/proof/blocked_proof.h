@@ -28,15 +28,15 @@ std::vector<double> greatestGaps_m(const std::vector<PlacedSurface>& parts, cons
                                    const std::vector<double>& moved_m);
 
 /// A proven overlap: for all positions of the bodies within their tolerances, some pair of the touches' parts
-/// overlaps by at least this beyond error_m. If the result is 0 or less, nothing is proven.
+/// overlaps by at least the result beyond error_m. If the result is 0 or less, nothing is proven.
 ///
 /// A point p of one part overlaps a ball of radius r about c inside another part unless h = |p - c| - r >= 0.
-/// A mean of such h with positive weights is negative only if one of them is negative. Let n be the direction
-/// from c to p, and w the displacement of p relative to c. The displacement increases h by at most n . w +
-/// |w|^2 / (2 (|p - c| - |w|)). The displacement w is linear in the motion of the bodies, up to |turn|^2 arm
-/// / 2 for a rotation. With the weights of the least-squares solution, the forces along n are in balance on
-/// each body, so the linear part of the mean vanishes up to rounding. The remainder of the linear part is
-/// bounded over all motions within the tolerances. Source: Farkas' lemma, with remainders.
+/// A mean of such h with positive weights is negative only if at least one h is negative. Let n be the
+/// direction from c to p, and w the displacement of p relative to c. The displacement increases h by at most
+/// n . w + |w|^2 / (2 (|p - c| - |w|)). The displacement w is linear in the motion of the bodies, up to
+/// |turn|^2 arm / 2 for a rotation. With the weights of the least-squares solution, the forces along n are in
+/// balance on each body, so the linear part of the mean vanishes up to rounding. The remainder of the linear
+/// part is bounded over all motions within the tolerances. Source: Farkas' lemma, with remainders.
 /// @param moved_m by body: greatest displacement of a corner from its drawn place
 double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
                        std::span<const PressedTouch> touches, const std::vector<MovableBody>& bodies,
@@ -53,10 +53,10 @@ double mayMove_m(const PlacedSurface& part);
 /// The proof uses a slice across the bore in which every third of a turn has a point of the bore's face. If
 /// the slice moves sideways by t < radius relative to the shaft, one of its points lies within a sixth of a
 /// turn of the direction back to the shaft's axis. This point is no farther from the shaft's axis than the
-/// bore's radius. It is therefore inside the shaft, if the shaft is round all around and has no hole near its
-/// face over the length by which the slice may move along the axis. A tilt of the slice only brings its
-/// points nearer to the axis. The converse does not hold: a disc that is larger than a bore can stand in it
-/// at a slant.
+/// bore's radius. The point is therefore inside the shaft, if the shaft is round all around and has no hole
+/// near its face over the length by which the slice may move along the axis. A tilt of the slice only brings
+/// its points nearer to the axis. The converse does not hold: a disc that is larger than a bore can stand in
+/// it at a slant.
 bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fit);
 
 }  // namespace vps::scenes

@@ -41,8 +41,8 @@ ClashGroups::ClashGroups(const std::vector<PlacedSurface>& parts, const CheckRes
   }
 }
 
-/// The bodies and all bodies that are connected to them by pairs for which `joins` is true, found breadth
-/// first and sorted. A fixed body connects no others.
+/// The given bodies and all bodies that pairs for which `joins` is true connect to the given bodies, found
+/// breadth first and sorted. A fixed body connects no other bodies.
 template <class Joins>
 std::vector<std::size_t> ClashGroups::reachable(std::vector<std::size_t> bodies, Joins joins,
                                                 std::size_t most) const {
@@ -82,7 +82,7 @@ bool ClashGroups::isOf(const std::vector<std::size_t>& group, const NearPair& pa
   return pair.is_clash && std::ranges::binary_search(group, body);
 }
 
-/// The bodies that may be moved: all without the fixed ones, or, if none is fixed, all but the largest.
+/// The bodies that may be moved: all that are not fixed, or, if no body is fixed, all but the largest body.
 std::vector<std::size_t> ClashGroups::movable(std::vector<std::size_t> bodies) const {
   const std::size_t count = bodies.size();
   std::erase_if(bodies, [&](std::size_t body) { return bodies_[body].is_fixed; });

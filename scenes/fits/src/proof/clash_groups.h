@@ -10,17 +10,18 @@
 
 namespace vps::scenes {
 
-/// Greatest number of bodies that are moved at once; each adds six unknowns.
+/// Greatest number of bodies that are moved at once; each body adds six unknowns.
 inline constexpr std::size_t kMostBodies = 40;
 
-/// Two parts that are or may come near each other. An overlap that the scene allows makes no pair.
+/// Two parts that are or may come near each other. Parts whose overlap the scene allows are no pair.
 struct NearPair {
   std::size_t a = 0, b = 0;
   bool is_clash = false;
   double drawn_depth_m = 0;
-  double allowed_m = 0;  ///< overlap as drawn of parts in contact, whose facets cross; more is not allowed
+  double allowed_m = 0;  ///< drawn overlap of parts in contact, whose facets cross; more depth is not allowed
   bool is_uncertain = false;  ///< CheckedPair::is_uncertain, at the drawn places
-  /// Error of the meshes anywhere plus a declared press fit. The error of drawn_depth_m is another one.
+  /// Error of the meshes anywhere plus a declared press fit. The error of drawn_depth_m can be smaller than
+  /// this error.
   double error_m = std::numeric_limits<double>::infinity();
 };
 

@@ -67,7 +67,7 @@ double unrolledArea(const std::vector<Vec3>& polygon) {
 /// material lies below it, down to the distance down_to_m from the axis.
 bool isRoundAndFull(const PlacedSurface& shaft, const RoundFace& face, const Vec3& at_W, double half_m,
                     double down_to_m) {
-  constexpr double kNone = 1e-5;  // share of the area that counts as none: rounding
+  constexpr double kNone = 1e-5;  // share of the area that counts as zero, because of rounding
   const Axis axis = axisOf(shaft, face);
   const NearAxis slab(axis.along_W, at_W - fromAxis(axis, at_W), shaft, half_m);
   double covered = 0;

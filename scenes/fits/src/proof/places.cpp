@@ -45,13 +45,13 @@ struct Moving {
 struct Tried {
   Moving moving;
   bool is_free = false;
-  double left_m = 0;  ///< deepest remaining overlap beyond the allowed one
+  double left_m = 0;  ///< deepest remaining overlap beyond the allowed depth
   std::vector<Six> motion;
   std::vector<Pose> X_WP;
   std::vector<PressedTouch> pressed;  ///< touches of the last step
 };
 
-/// The search for places without overlap, and for proofs that there are none.
+/// The search for places without overlap, and for proofs that no such places exist.
 class PlaceSearch {
  public:
   PlaceSearch(const std::vector<PlacedSurface>& parts, const CheckResult& checked)
@@ -156,7 +156,7 @@ class PlaceSearch {
   }
 
   /// The proof, in words, that the pair overlaps for all positions of its parts within kSightTolerance_m of
-  /// the drawn ones; empty if nothing is proven.
+  /// the drawn positions; empty if nothing is proven.
   [[nodiscard]] std::string provenAlone(const NearPair& pair) const {
     const std::string& a = parts_[pair.a].name;
     const std::string& b = parts_[pair.b].name;
@@ -174,8 +174,8 @@ class PlaceSearch {
     return {};
   }
 
-  /// The reason, in words, why a clash that only a fit shows cannot be cleared: where the meshes do not show
-  /// the overlap, they cannot show that it is gone. Empty if the meshes show the overlap.
+  /// The reason, in words, why a clash that only a fit shows cannot be cleared: meshes that do not show the
+  /// overlap cannot show its absence either. Empty if the meshes show the overlap.
   [[nodiscard]] std::string hiddenByFacets(const NearPair& pair) const {
     // This depth is a lower bound that is found quickly; the exact depth takes a second.
     const PlacedSurface &a = parts_[pair.a], &b = parts_[pair.b];
@@ -190,8 +190,8 @@ class PlaceSearch {
 
   /// The proof, in words, that no motion within kSightTolerance_m clears the touches of a try; empty if
   /// nothing is proven. All bodies of the touches are moved from their drawn places, so that the forces on
-  /// each are in balance. Nothing is proven for parts that are pressed into each other, since they may be
-  /// drawn at a wrong place in each other.
+  /// each body are in balance. Nothing is proven for parts that are pressed into each other, since they may
+  /// be drawn at a wrong place in each other.
   [[nodiscard]] std::string proven(const std::vector<PressedTouch>& touches) const {
     std::vector<std::size_t> bodies;
     for (const PressedTouch& pressed : touches)
@@ -217,8 +217,8 @@ class PlaceSearch {
   /// The result of provenOverlap_m() after the least motion of the touches for the cost e.
   double provenAfter(Tried& tried, double e) const {
     constexpr int kRounds = 4;
-    // Share of the deepest overlap. Touches whose bound exceeds their gap by more weaken the proof and are
-    // left out.
+    // Greatest excess of a touch's bound over its gap, as a share of the deepest overlap. Touches with a
+    // greater excess weaken the proof and are left out.
     constexpr double kMostBend = 0.6;
     solve(tried, e);
     const auto moved_m = [&] {
@@ -369,7 +369,7 @@ class PlaceSearch {
           for (const Vec3& p : at[part].surface->mesh().vertices) at[part].box_W.add(X_WP[part] * p);
     tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
       const std::optional<CheckedPair> pair = checkPair(at[pairs[i].a], at[pairs[i].b], checked_.near_m);
-      // A pair that is uncertain at its drawn place makes the whole check uncertain, not this place.
+      // A pair that is uncertain at its drawn place makes the whole check uncertain, but not its new place.
       const bool is_new_doubt = pair && pair->is_uncertain && !pairs[i].is_uncertain;
       is_clash[i] = pair && (pair->state == PairState::Clash || is_new_doubt) ? 1 : 0;
     });
@@ -403,7 +403,7 @@ class PlaceSearch {
   std::vector<std::size_t> body_of_;
   ClashGroups clashes_;
   std::vector<Six> motion_;            // by body: motions of the groups that are free so far
-  std::vector<Pose> X_WP_;             // by part: poses after these motions
+  std::vector<Pose> X_WP_;             // by part: poses after the motions in motion_
   std::vector<MovableBody> by_sight_;  // the bodies, each allowed to move by kSightTolerance_m; for proofs
   std::size_t work_ = 0;               // work done for the current group
 };

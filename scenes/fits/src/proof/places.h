@@ -41,9 +41,10 @@ std::vector<std::size_t> bodyOfPart(const std::vector<MovableBody>& bodies, std:
 /// Searches for places without overlap; see CheckedPlaces. The verdict is Fits at once if no parts clash.
 ///
 /// Parts that are connected by clashes form a group. The search moves first one part of a group alone (the
-/// smallest first), then all parts but the largest, then these and all near parts, and last the whole group.
-/// It finds the least motion that opens all gaps to first order, measures the overlap exactly after this
-/// motion, and repeats until no pair overlaps. The result has the same bits on any number of threads.
+/// smallest first), then all parts but the largest, then these parts and all parts near them, and last the
+/// whole group. The search finds the least motion that opens all gaps to first order, measures the overlap
+/// exactly after this motion, and repeats until no pair overlaps. The result has the same bits on any number
+/// of threads.
 /// @param checked the check's result, with all near pairs and their fits
 CheckedPlaces freePlaces(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
                          const Progress& progress);

@@ -40,7 +40,7 @@ double distanceToOrigin(const std::array<Vec2, 3>& t) {
 
 AxisExtent axisExtent(const Triangle& t, const Vec3& center, const Vec3& axis, const Vec3& u, const Vec3& v) {
   AxisExtent extent;
-  std::array<Vec2, 3> seen;  // projected along the axis
+  std::array<Vec2, 3> seen;  // corners projected along the axis
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 r = t[k] - center;
     const double along_m = axis.dot(r);

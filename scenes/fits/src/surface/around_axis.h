@@ -16,7 +16,7 @@ namespace vps::scenes {
 
 /// Ranges along and around an axis of rotation; a rotation about the axis changes neither.
 struct AxisExtent {
-  double from_m = 1e300, to_m = -1e300;      ///< range along the axis, from its centre
+  double from_m = 1e300, to_m = -1e300;      ///< range along the axis, from the centre of rotation
   double nearest_m = 1e300, farthest_m = 0;  ///< range of the distance from the axis
 
   void add(const AxisExtent& other);
@@ -53,8 +53,8 @@ class NearAxis {
         v_(axis_.cross(u_)),
         half_m_(half_length_m) {}
 
-  /// The clipped facet, in coordinates along u, v and the axis. It has fewer than three corners if the facet
-  /// is outside the slab.
+  /// The clipped facet, in coordinates along u, v and the axis. The polygon has fewer than three corners if
+  /// the facet is outside the slab.
   [[nodiscard]] std::vector<Vec3> clippedFacet(std::uint32_t i) const {
     return clipped(of_.surface->triangle(i));
   }

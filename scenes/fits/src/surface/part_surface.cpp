@@ -13,7 +13,7 @@ namespace {
 /// Angle below which facets are coplanar. Rounding bends a flat face at its diagonal by about 1e-8; facets of
 /// curved faces meet at more than 1e-3.
 constexpr double kFlat_rad = 1e-6;
-constexpr double kPartSurfaceParallel = 1e-12;  // 1 - cosine of parallel normals
+constexpr double kPartSurfaceParallel = 1e-12;  // greatest 1 - cosine of parallel normals
 
 double angleBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -126,9 +126,9 @@ Triangle PartSurface::triangle(std::uint32_t i) const {
 
 // Estimates chord errors. If a strip of width w across a curve meets its neighbours at the angle theta, the
 // radius is w / theta, and the middle of the strip is w theta / 8 inside the curve through its edges. A
-// triangle of a ball has three such edges, and their sum exceeds the triangle's depth below the ball. A flat
-// face next to a curved one is wider, so the smaller of both widths counts. A bevel of less than kCurved_rad
-// is taken for a curve, and the estimate is then too large.
+// triangle of a ball has three edges to curved neighbours, and their sum exceeds the triangle's depth below
+// the ball. A flat face next to a curved one is wider, so the smaller of both widths counts. A bevel of less
+// than kCurved_rad is taken for a curve, and the estimate is then too large.
 void PartSurface::estimateChords() {
   chord_m_.assign(mesh().triangles.size(), 0);
   for (std::uint32_t i = 0; i < chord_m_.size(); ++i)

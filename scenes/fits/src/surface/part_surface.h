@@ -60,7 +60,7 @@ class PartSurface {
   }
 
   /// The plane of a tree node: the outward normal if all facets of the node share it, else zero; and the
-  /// greatest coordinate of the facets along it.
+  /// greatest coordinate of the facets along the normal.
   struct NodePlane {
     Vec3 n = Vec3::Zero();
     double highest_m = 0;
@@ -82,10 +82,10 @@ class PartSurface {
 
   /// Greatest distance of a facet from the curved face that it approximates, as estimated.
   [[nodiscard]] double chord_m(std::uint32_t i) const { return chord_m_[i]; }
-  /// Upper bound of chord_m() that also holds where facets of one face differ in width. Zero for flat faces
-  /// only. O(1).
+  /// Upper bound of chord_m() that also holds where facets of one face differ in width. The bound is zero for
+  /// flat faces only. O(1).
   [[nodiscard]] double chordBound_m(std::uint32_t i) const;
-  /// The greatest chord_m() of the facets whose boxes meet this one.
+  /// The greatest chord_m() of the facets whose boxes meet the given box.
   [[nodiscard]] double chordIn(const Box& box_P) const;
 
   /// Greatest width of the cracks in this box. The true surface may be anywhere within a crack's width.

@@ -41,7 +41,7 @@ std::vector<std::pair<std::size_t, std::size_t>> nearPairs(const std::vector<Pla
                                                            double near_m);
 
 /// Calls `work(i)` for i = 0 to count - 1 on all cores, and reports progress on the caller's thread only. An
-/// exception from either ends the loop.
+/// exception from `work` or `progress` ends the loop.
 template <class Work>
 void forEachOnCores(std::size_t count, const Progress& progress, const char* doing, Work work) {
   const std::thread::id caller = std::this_thread::get_id();

@@ -22,8 +22,8 @@ int featureAt(int edge, double fraction) {
   return fraction >= 1 ? 4 + (edge + 1) % 3 : 1 + edge;
 }
 
-/// The point where segment pq passes through triangle t; empty if it does not pass, or lies in the triangle's
-/// plane.
+/// The point where segment pq passes through triangle t; empty if the segment does not pass through the
+/// triangle, or lies in the triangle's plane.
 std::optional<Vec3> crossing(const Vec3& p, const Vec3& q, const Triangle& t) {
   const Vec3 u = t[1] - t[0], v = t[2] - t[0], n = u.cross(v);
   const double above_p = n.dot(p - t[0]), above_q = n.dot(q - t[0]);

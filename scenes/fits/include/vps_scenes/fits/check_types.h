@@ -34,8 +34,8 @@ struct DrawnPart {
   std::string name;
   Mesh mesh;
   Pose X_WP;
-  /// Greatest distance of the mesh from the curved faces that it approximates, where the file states it. If
-  /// empty, the distance is estimated from the angles between facets.
+  /// Greatest distance of the mesh from the curved faces that it approximates, where the file states this
+  /// distance. If the member is empty, the distance is estimated from the angles between facets.
   std::optional<double> chord_m;
   bool allow_overlap = false;  ///< overlaps of this part are reported but do not count as clashes
   double press_fit_m = 0;      ///< this member and the next three: see ScenePart
@@ -54,8 +54,8 @@ struct CheckSettings {
   bool has_sections = false;
   bool has_maps = false;
   bool has_places = false;  ///< searches for places without overlap (CheckedPlaces); needs has_fits
-  /// Names of the parts to check. Pairs without any of these parts, and the play of other parts, are left
-  /// out. If empty, all parts are checked.
+  /// Names of the parts to check. Pairs that contain no named part, and the play of parts that are not named,
+  /// are left out. If the list is empty, all parts are checked.
   std::vector<std::string> only_parts = {};
   [[nodiscard]] bool isAsked(const std::string& part) const;
 };
@@ -63,15 +63,14 @@ struct CheckSettings {
 /// An overlap that exceeds its error by no more than this depth counts as contact and not as a clash, for
 /// `vps check` and for every verdict. Depths in a run are measured with this precision
 /// (OverlapJudge::kCertain_m), so parts that overlap by less cannot be distinguished from parts that touch. A
-/// smaller depth has no meaning in a drawing either: a steel part of 50 mm grows by the same length for each
-/// kelvin.
+/// smaller depth has no meaning in a drawing either: a steel part of 50 mm grows by about 0.5 um per kelvin.
 inline constexpr double kContactDepth_m = 0.5e-6;
 
 enum class PairState {
   Apart,     ///< the clearance is more than its error
   Contact,   ///< the surfaces meet to within the error and kContactDepth_m; coincident faces are contact
-  PressFit,  ///< the parts overlap by more than contact does, and by no more than a declared press fit
-  Clash,     ///< the parts overlap by more than contact does, and by more than is declared
+  PressFit,  ///< the parts overlap by more than contact allows, and by no more than a declared press fit
+  Clash,     ///< the parts overlap by more than contact and any declared press fit allow
 };
 VPS_SCENES_API const char* toText(PairState state);
 
@@ -81,9 +80,9 @@ struct CheckedPair {
   std::string a, b;
   PairState state = PairState::Apart;
   double clearance_m = 0;  ///< least distance of the surfaces; 0 where the meshes overlap
-  /// The greatest distance from a point of one part's surface inside the other part to the other's surface,
-  /// or the diameter of the greatest ball that lies in both parts, whichever is greater. This depth is a
-  /// property of the solids: it does not depend on how their faces are divided into facets.
+  /// The greatest distance from a point of one part's surface inside the other part to the other part's
+  /// surface, or the diameter of the greatest ball that lies in both parts, whichever is greater. This depth
+  /// is a property of the solids: it does not depend on how their faces are divided into facets.
   double interference_depth_m = 0;
   double interference_volume_m3 = 0;
   double volume_error_m3 = 0;
@@ -92,32 +91,33 @@ struct CheckedPair {
   Vec3 at_W = Vec3::Zero();  ///< the deepest point of the overlap, or the middle between the nearest points
   bool is_allowed = false;   ///< the scene allows the overlap
   /// True where the check cannot decide whether the parts overlap, because one of them has a surface without
-  /// an inside (CheckedPart::no_inside). `state` then describes the surfaces alone.
+  /// an inside (CheckedPart::no_inside). `state` of an uncertain pair describes the surfaces alone.
   bool is_uncertain = false;
   double press_fit_m = 0;  ///< declared interference, the greater of both parts'; 0: none
   [[nodiscard]] bool isClash() const { return state == PairState::Clash && !is_allowed; }
-  /// Whether the overlap is deeper than contact.
+  /// Whether the depth of the overlap exceeds its error by more than kContactDepth_m.
   [[nodiscard]] bool isBeyondContact() const { return interference_depth_m > error_m + kContactDepth_m; }
 };
 
 enum class FitKind {
   Shaft,   ///< a round shaft in a bore
-  Key,     ///< two parallel faces between two others
+  Key,     ///< two parallel faces of one part between two parallel faces of another part
   Thread,  ///< a screw in a nut
 };
 VPS_SCENES_API const char* toText(FitKind kind);
 
 /// Pressure and force of pressing a shaft into a smaller bore, by Lame's formula for elastic thick-walled
 /// cylinders. The hub is the largest ring around the bore that consists of material only, over the middle
-/// half of the fit's length. The shaft's hole is the largest hole around its axis over the same length.
+/// half of the fit's length. The shaft's hole is the largest hole around the shaft's axis over the middle
+/// half.
 struct CheckedPress {
   double hub_m = 0, hole_m = 0;  ///< diameters: outside of the hub, hole of the shaft
-  double pressure_Pa = 0;        ///< in the joint, for the interference as drawn
+  double pressure_Pa = 0;        ///< pressure in the joint, for the interference as drawn
   double hub_stress_Pa = 0;      ///< greatest equivalent stress (Tresca), at the bore
-  double force_N = 0;            ///< to press the shaft along the fit's whole length, or out again
+  double force_N = 0;            ///< force to press the shaft in or out along the fit's whole length
   double declared_force_N = 0;   ///< force to press the shaft in for the declared interference
   double shaft_modulus_Pa = 0, hub_modulus_Pa = 0;  ///< Young's moduli that were used
-  double friction = 0;  ///< coefficient that was used: geometric mean of both parts' coefficients
+  double friction = 0;  ///< friction coefficient that was used: geometric mean of both parts' coefficients
 };
 
 /// A part that fits into another one. Fits are found from facets that lie on a common cylinder, plane or
@@ -126,33 +126,34 @@ struct CheckedFit {
   FitKind kind = FitKind::Shaft;
   std::string shaft, bore;         ///< the inner and the outer part
   Vec3 axis_W = Vec3::UnitZ();     ///< axis of the cylinders, or normal of a key's faces; unit
-  Vec3 at_W = Vec3::Zero();        ///< on the axis, in the middle of the length
+  Vec3 at_W = Vec3::Zero();        ///< point on the axis, in the middle of the fit's length
   double shaft_m = 0, bore_m = 0;  ///< diameters (major diameters of a thread) or widths, as drawn
   /// Direction of the length: a shaft's axis, or the longer side of the area in which a key's faces cover
   /// each other; unit.
   Vec3 along_W = Vec3::UnitZ();
   double length_m = 0;               ///< length of the fit along `along_W`
   double diametral_clearance_m = 0;  ///< negative: interference
-  double offset_m = 0;               ///< greatest distance of the axes over the length; 0 for a key
+  double offset_m = 0;               ///< greatest distance between the two axes along the fit; 0 for a key
   double error_m = 0;                ///< bound of the clearance's error
   std::string iso_286;               ///< "H7/g6" if both sizes lie in the zones of a common fit, else empty
   /// Lead of a thread: axial advance in one turn, negative for a left-hand thread. Where `thread` names a
   /// standard thread, the lead is the standard's.
   double lead_m = 0;
   int starts = 0;
-  std::string thread;                 ///< "M16", "M16x1.5-LH" of ISO 262; else empty
+  std::string thread;                 ///< name in ISO 262, "M16" or "M16x1.5-LH"; else empty
   std::optional<CheckedPress> press;  ///< set for a shaft with interference, if a press fit is declared
 };
 
 /// Describes the fit as a standard does: "H7/g6" or "M16". A thread that is in no standard is described by
-/// its lead, as "lead 3.2 mm, 2 starts, left-hand"; for another fit that is in no standard the text is empty.
+/// its lead, as "lead 3.2 mm, 2 starts, left-hand"; for any other fit that is in no standard the text is
+/// empty.
 VPS_SCENES_API std::string standardOf(const CheckedFit& fit);
 
 /// How far a part can move along an axis or turn about it before it touches another part; the other parts do
 /// not move. Infinite where nothing stops the part, or where it can turn by a whole turn.
 struct Play {
   std::array<double, 6> m = {};    ///< +x, -x, +y, -y, +z, -z
-  std::array<double, 6> rad = {};  ///< rotations about the same axes, in the same order
+  std::array<double, 6> rad = {};  ///< rotations about the axes of `m`, in the order of `m`
   /// Bounds of the errors of `m` and `rad`: the error of the surfaces' distance, divided by the rate at which
   /// the surfaces approach each other at the contact that stops the part first. Infinite where the search
   /// ended before a contact was found (the play is then greater than stated), or where no bound is known. 0
@@ -160,10 +161,10 @@ struct Play {
   std::array<double, 6> error_m = {}, error_rad = {};
 };
 
-/// A screw motion by which a part can be removed from the others.
+/// A screw motion by which a part can be removed from the other parts.
 struct ScrewWay {
-  Vec3 axis_W = Vec3::UnitZ();  ///< unit; the part leaves in this direction
-  Vec3 at_W = Vec3::Zero();     ///< on the axis
+  Vec3 axis_W = Vec3::UnitZ();  ///< unit direction in which the part leaves
+  Vec3 at_W = Vec3::Zero();     ///< point on the axis
   double lead_m = 0;            ///< axial advance in one turn; negative: left-hand
 };
 
@@ -177,14 +178,15 @@ struct CheckedPart {
   std::optional<Play> play;  ///< empty for a part that clashes or is pressed in, or without has_play
   Mat3 play_axes_W = Mat3::Identity();  ///< columns: the axes of `play`
   Vec3 play_center_W = Vec3::Zero();    ///< point through which the axes of rotation pass
-  /// Bounds of the play's error for contacts at right angles to the motion; other contacts: Play::error_m.
+  /// Bounds of the play's error for contacts at right angles to the motion; Play::error_m bounds the error
+  /// for other contacts.
   double play_error_m = 0, play_error_rad = 0;
   std::vector<Vec3> ways_out_W;  ///< unit directions in which the part can be removed in a straight line
   std::vector<ScrewWay> screw_ways_out;  ///< screw motions by which the part can be removed
   /// False where a shaft and its bore have the same size, where facets cross as drawn by no more than the
   /// error of the pair, or where the search ended before it found a contact. The mesh can then stop a motion
-  /// that the true faces allow, or allow a longer motion than they do; `play` may deviate by more than its
-  /// error, and ways out may be missing.
+  /// that the true faces allow, or allow a longer motion than the true faces; `play` may deviate by more than
+  /// its error, and ways out may be missing.
   bool is_play_certain = true;
 };
 
@@ -213,7 +215,7 @@ struct CheckedSection {
 struct ClearanceMap {
   std::string part;
   Mesh mesh_W;
-  /// For each vertex: distance to the nearest other part, at most near_m; negative inside that part.
+  /// For each vertex: distance to the nearest other part, at most near_m; negative inside the nearest part.
   std::vector<double> distance_m;
 };
 
@@ -234,8 +236,8 @@ struct MovedPart {
 /// (fits/fits.h).
 struct CheckedPlaces {
   /// Fits: no parts overlap as drawn, or no parts overlap, by exact measure, after the parts of `moved` are
-  /// moved. Blocked: it is proven that no such places exist within 0.5 mm of the drawn ones, whatever the
-  /// fits. NotShown: neither places nor a proof were found.
+  /// moved. Blocked: it is proven that no places without overlap exist within 0.5 mm of the drawn places,
+  /// whatever the fits. NotShown: neither places without overlap nor a proof were found.
   Verdict verdict = Verdict::Fits;
   std::vector<MovedPart> moved;  ///< the parts that were moved; filled also where other overlaps remain
   std::string reason;            ///< reason for a verdict other than Fits, in words
@@ -244,7 +246,7 @@ struct CheckedPlaces {
 /// The result of a check.
 struct CheckResult {
   std::string assembly;
-  std::vector<CheckedPair> pairs;  ///< clashes first, the deepest first; then by clearance
+  std::vector<CheckedPair> pairs;  ///< sorted: clashes first, deep overlaps first, small clearances first
   std::vector<CheckedFit> fits;
   std::vector<CheckedPart> parts;
   /// Names of parts that are near no other part, so that nothing shows whether they fit. Empty if the

@@ -13,7 +13,7 @@ namespace vps::scenes {
 enum class FastenerKind {
   Screw,    ///< a round shank with a head, threaded or drawn plain
   Stud,     ///< a thread without a head
-  Nut,      ///< with a thread inside, or a polygon around a plain hole
+  Nut,      ///< a part with an internal thread, or a polygon around a plain hole
   Washer,   ///< a flat ring
   Pin,      ///< a plain cylinder
   Key,      ///< a bar between two parts
@@ -29,8 +29,8 @@ struct Fastener {
 };
 
 /// Finds the fasteners among the parts, in the order of the parts, from the shape of each part alone. Keys
-/// are not found here: they are recognised by their fits, in planAssembly(). A cylinder with fewer than 16
-/// sides counts as a prism and is not found. Throws LoadError for a part that cannot be measured.
+/// are not found by this function: planAssembly() recognises keys by their fits. A cylinder with fewer than
+/// 16 sides counts as a prism and is not found. Throws LoadError for a part that cannot be measured.
 VPS_SCENES_API std::vector<Fastener> findFasteners(const std::vector<DrawnPart>& parts,
                                                    const Progress& progress = {});
 
