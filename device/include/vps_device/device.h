@@ -19,7 +19,7 @@ namespace vps::device {
 // --- Events: faults, warnings and notices, which a viewer shows and sounds
 
 enum class DeviceEventKind : std::uint8_t {
-  // Faults: no wrench until rearm().
+  // Faults: the device gives no wrench until rearm().
   BadEncoder,   ///< a reading is not finite
   EncoderJump,  ///< a gimbal centre jumped [m]
   PulledApart,  ///< the gimbal centres' distance differs from L [m]

@@ -138,13 +138,13 @@ VPS_DEVICE_API const char* toText(OperatorPhase phase) noexcept;
 /// The strategies of the hand while it inserts or presses, each with its name in results. A recording keeps
 /// the number of the row, so that a new strategy takes the last row; a recording has room for 15 strategies.
 #define VPS_OPERATOR_STRATEGIES(ROW)                                                                    \
-  ROW(Approach, "approach")             /* moves ahead, guided by sight, until it touches */            \
+  ROW(Approach, "approach")             /* moves ahead, guided by sight, until contact */               \
   ROW(Touch, "touch")                   /* pushes lightly and lets the part slide */                    \
   ROW(TiltIn, "tilt_in")                /* puts a corner in first, slides it, turns the part upright */ \
   ROW(SpiralSearch, "spiral_search")    /* slides on the surface in a spiral until the part drops */    \
   ROW(AlignByTorque, "align_by_torque") /* pushes, and yields to side force and torque */               \
   ROW(BackOff, "back_off")              /* withdraws, and looks again */                                \
-  ROW(PressHome, "press_home")          /* presses against the stop that it felt */                     \
+  ROW(PressHome, "press_home")          /* presses against the stop that is felt */                     \
   ROW(PlaceBySight, "place_by_sight")   /* nothing stops the part: holds it where its target is seen */ \
   ROW(TurnSearch, "turn_search")        /* turns about the axis, to and fro, until the part drops */    \
   ROW(TurnBack, "turn_back")            /* turns against the thread until the part drops into it */     \

@@ -26,7 +26,7 @@ class HandSource {
   virtual void poll(HandInput& input) = 0;
 };
 
-/// Source: made in the reading thread, by its default constructor.
+/// The reading thread makes the Source, by its default constructor.
 template <typename Source>
 class PolledDevice final : public Device {
  public:
@@ -45,7 +45,7 @@ class PolledDevice final : public Device {
     if (!input.is_connected) sample.status = Status::Fault;
     return sample;
   }
-  void write(const Wrench&) noexcept override {}  // there is no motor
+  void write(const Wrench&) noexcept override {}  // the device has no motor
   [[nodiscard]] DeviceLimits limits() const noexcept override { return control_.limits(); }
   [[nodiscard]] std::string_view name() const noexcept override { return name_; }
 
@@ -67,7 +67,7 @@ class PolledDevice final : public Device {
   TripleBuffer<HandInput> input_;
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::atomic<bool> is_ending_{false};
-  std::thread thread_;  // the last member: it uses the other ones
+  std::thread thread_;  // the last member, as it uses the other members
 };
 
 inline RateSettings rateSettings(const DeviceOptions& options) {

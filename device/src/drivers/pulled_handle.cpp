@@ -37,7 +37,7 @@ const DeviceSample& PulledHandle::step(const Pose& X_DH_wish, const Wrench& F_Ho
   const PulledHandleSettings& s = settings_;
   sample_.V_DH.v = speed(e_m, F.f, s.k_N_per_m, s.b_Ns_per_m, s.force_N, dt_s);
   sample_.V_DH.w = speed(e_rad, F.tau, s.k_Nm_per_rad, s.b_Nms_per_rad, s.torque_Nm, dt_s);
-  // Through a quaternion, so that the matrix stays a rotation after many steps.
+  // Integrated through a quaternion, so that the matrix stays a rotation after many steps.
   sample_.X_DH = Pose(Quat(rotationFromVector(dt_s * sample_.V_DH.w) * sample_.X_DH.R),
                       Vec3(sample_.X_DH.p + dt_s * sample_.V_DH.v));
   return sample_;

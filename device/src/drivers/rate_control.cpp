@@ -48,7 +48,7 @@ const DeviceSample& RateControl::step(const Deflection& deflection, double now_s
   const Vec3 edge_m = 0.5 * settings_.workspace_m;
   const Vec3 p = (sample_.X_DH.p + step_m).cwiseMax(-edge_m).cwiseMin(edge_m);
   sample_.V_DH = {step_rad / dt_s, Vec3((p - sample_.X_DH.p) / dt_s)};
-  // Through a quaternion, so that the matrix stays a rotation after many steps.
+  // Integrated through a quaternion, so that the matrix stays a rotation after many steps.
   sample_.X_DH = Pose(Quat(rotationFromVector(step_rad) * sample_.X_DH.R), p);
   return sample_;
 }

@@ -10,7 +10,7 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr std::size_t kMinReadings = 12;  // two for each unknown
+constexpr std::size_t kMinReadings = 12;  // two readings for each unknown
 constexpr int kMaxIterations = 50;
 constexpr double kSettled = 1e-13;  // m and rad: a few roundings of lengths of 1 m
 constexpr double kBlur_m = 1e-3;    // readings from which the base is less certain than this are too similar

@@ -20,7 +20,7 @@ using Mat73 = Eigen::Matrix<double, 7, 3>;
 using Mat67 = Eigen::Matrix<double, 6, 7>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kAcross = 9, kAlong = 13;  // places: every 50 mm of the paper's workspace
+constexpr int kAcross = 9, kAlong = 13;  // places: one every 50 mm of the paper's workspace
 constexpr int kTilts = 8;                // attitudes of 45 deg about axes across the handle
 constexpr double kTilt_rad = kPi / 4;
 constexpr int kDirections = 4000;  // directions of a sphere, each for 0.003 sr
@@ -124,7 +124,7 @@ double greatestScale(const DualArmParameters& p, int attitudes) {
   return low;
 }
 
-/// Greatest length of a sum of the columns, each forward or backward: the farthest corner of a zonotope.
+/// Greatest length of a sum of the columns, each with the sign + or -: the farthest corner of a zonotope.
 double farthestCorner(const Eigen::Matrix<double, 3, 7>& columns) {
   double farthest = 0;
   for (int signs = 0; signs < 64; ++signs) {  // the other half is symmetric
@@ -135,8 +135,8 @@ double farthestCorner(const Eigen::Matrix<double, 3, 7>& columns) {
   return farthest;
 }
 
-/// Derivative of the measured pose (1)-(8) by each encoder: (rotation, shift) per rad or m. Central
-/// differences.
+/// Derivative of the measured pose, the paper's equations (1) to (8), by each encoder: (rotation, shift) per
+/// rad or m. Central differences.
 Mat67 readingMap(const DualArmParameters& p, const JointVector& joints) {
   constexpr double kStep = 1e-6;
   Mat67 map = Mat67::Zero();
@@ -230,7 +230,7 @@ void Survey::addMechanics(const Pose& X_DH, const HandleMotion& motion, bool is_
   if (!is_straight) return;
   for (int i = 0; i < 13; ++i) {
     const Vec3 u = Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).normalized();
-    // Power for each m/s.
+    // The friction force is the power of friction at 1 m/s.
     samples_.add(c_.friction_N, coulomb_.dot((motion.J.rightCols<3>() * u).cwiseAbs()));
   }
 }

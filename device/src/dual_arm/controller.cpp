@@ -14,7 +14,7 @@ using Kind = DeviceEventKind;
 constexpr double kHot = 0.8;            // share of the allowed heat: warns before the peak decreases at 0.9
 constexpr double kNearStop_rad = 0.03;  // plates, q2, q3: 2 deg
 constexpr double kNearStop_m = 0.02;    // slides
-constexpr double kArmsNear_m = 0.02;    // between their surfaces
+constexpr double kArmsNear_m = 0.02;    // between the arms' surfaces
 // q2: 21 deg before the singularity; the motor needs 3 times the torque
 constexpr double kNearSingular_rad = 1.2;
 

@@ -7,7 +7,7 @@
 namespace vps::device {
 namespace {
 
-// The peak decreases over the last tenth of the budget, so that force does not drop abruptly.
+// The peak decreases over the last tenth of the heat budget, so that force does not drop abruptly.
 constexpr double kBlend = 0.1;
 
 double shareOf(double heat) {

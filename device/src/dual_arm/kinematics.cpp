@@ -7,7 +7,7 @@
 namespace vps::device {
 namespace {
 
-// Cosine or metres; below it a joint rate exceeds a million times the handle's.
+// Cosine or metres; below this value a joint rate exceeds a million times the handle's.
 constexpr double kSingular = 1e-6;
 
 Mat3 columns(const Vec3& x, const Vec3& y, const Vec3& z) {
@@ -44,7 +44,7 @@ struct Configuration {
   Mat3 R_DL, R_DR;       // arm bases
   Mat3 J_left, J_right;  // Jacobians of the arms, each in its base frame
   Mat3 J_left_inverse, J_right_inverse;
-  Mat3 J_barrel;          // angular, left, in its base frame
+  Mat3 J_barrel;          // angular, of the left barrel, in the left base frame
   Vec3 p_HL, p_HR, p_EH;  // vectors from H to the gimbal centres, and from E to H
   Vec3 Y, z3, n;          // handle axis, barrel axis, and the direction in which the gimbal transmits torque
   double q2_rad = 0, cos_q2 = 1;
@@ -152,9 +152,9 @@ Pose armBase(const DualArmParameters& parameters, Side side) noexcept {
 }
 
 Mat3 barrelRotation(const DualArmParameters& parameters, const ArmJoints& left) noexcept {
-  // The barrel is fixed to the plate such that (6) at q = 0 and t = 0 gives the identity for the handle in D.
-  // The barrel's axis z3, along which the handle is singular, then is horizontal and perpendicular to the
-  // arm.
+  // The barrel is fixed to the plate such that the paper's equation (6) at q = 0 and t = 0 gives the identity
+  // for the handle in D. The barrel's axis z3, along which the handle is singular, then is horizontal and
+  // perpendicular to the arm.
   const Mat3 R_plate_3 = columns({-1, 0, 0}, {0, 0, -1}, {0, -1, 0});
   const ArmAxes a = armAxes(left);
   const Mat3 R_A_plate = columns(a.e3, a.e1, a.e2);
@@ -210,8 +210,8 @@ Status gimbalAngles(const Vec3& Y_3, double& q1_rad, double& q2_rad) noexcept {
   const double cos_q2 = std::hypot(Y_3.x(), Y_3.y());
   q2_rad = std::atan2(Y_3.z(), cos_q2);
   if (cos_q2 < kSingular) return Status::Singular;
-  // Column 2 of (6) is (-c1 c2, -s1 c2, s2): both signs are negative; (7) as printed is right in half the
-  // plane only.
+  // Column 2 of the paper's equation (6) is (-c1 c2, -s1 c2, s2): both signs are negative; equation (7) as
+  // printed is right in half the plane only.
   q1_rad = std::atan2(-Y_3.y(), -Y_3.x());
   return Status::Ok;
 }
@@ -258,7 +258,7 @@ Status handleMotion(const DualArmParameters& parameters, const Pose& X_DH, Handl
   J.row(6) = -(c.n.transpose() * barrel) * J.topRows<3>();
   J.block<1, 3>(6, 0) += c.n.transpose();
   J.row(6) /= c.cos_q2;
-  // sin q2 = Y . z3, and both turn: q2' = (w - w_barrel) . (Y x z3) / cos q2.
+  // sin q2 = Y . z3, and both Y and z3 turn: q2' = (w - w_barrel) . (Y x z3) / cos q2.
   const Vec3 m = c.Y.cross(c.z3) / c.cos_q2;
   motion.J_q2 = -(m.transpose() * barrel) * J.topRows<3>();
   motion.J_q2.head<3>() += m.transpose();

@@ -12,7 +12,7 @@
 #include "vps_device/dual_arm/kinematics.h"
 
 // toml++ 3.3 asserts that a table header holds a key, so that "[=]" in a user's file would abort. Without the
-// assertion it reports the mistake.
+// assertion toml++ reports the mistake.
 #define TOML_ASSERT(expr) static_assert(true)
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
@@ -162,7 +162,7 @@ std::string slurp(const std::string& file) {
 
 }  // namespace
 
-/// Reads one file. Its values replace earlier values.
+/// Reads one file. The values of the file replace earlier values.
 struct DualArmFileReader {
   static DualArmParameters unset() { return DualArmParameters(DualArmParameters::Unset{}); }
 

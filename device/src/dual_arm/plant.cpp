@@ -157,9 +157,9 @@ double DualArmPlant::addStops(double dt_s, const Vec6& V_next, Mat6& A, Vec6& b)
   return stored_J;
 }
 
-// (M + dt (B + friction) + dt^2 K) V' = momentum + dt F. The state is momentum (of the joints in joint space,
-// of the handle in D), so that the change of inertia with the pose needs no term of its own. Dry friction is
-// a damper f_c / max(|q'|, slip), found by a few iterations on q'.
+// Solves (M + dt (B + friction) + dt^2 K) V' = momentum + dt F. The state is momentum (of the joints in joint
+// space, of the handle in D), so that the change of inertia with the pose needs no term of its own. Dry
+// friction is a damper f_c / max(|q'|, slip), found by a few iterations on q'.
 DualArmPlant::Vec6 DualArmPlant::solve(double dt_s, const HandForce& hand, const Motors& motors,
                                        JointVector& damper, double& stops_J) const noexcept {
   const JointMatrix& J = motion_.J;

@@ -42,7 +42,8 @@ JointVector structureDrift(const DualArmParameters& p, const JointVector& joints
   const JointVector load2 = k.cwiseProduct(stretch).cwiseAbs2();  // N^2 m^2, N^2
   JointVector drift = JointVector::Zero();
   for (int arm = 0; arm < 6; arm += 3) {
-    // 1/K_1 = .. + g / (d c2)^2,  1/K_2 = .. + g / d^2; half of K^2 stretch^2 times their derivatives.
+    // 1/K_1 = .. + g / (d c2)^2,  1/K_2 = .. + g / d^2; the drift is half of K^2 stretch^2 times the
+    // derivatives of 1/K.
     const double d = joints[arm + 2], c2 = std::cos(joints[arm + 1]), lever2 = d * d * c2 * c2;
     drift[arm + 1] = gimbal / lever2 * std::tan(joints[arm + 1]) * load2[arm];
     drift[arm + 2] = -gimbal / d * (load2[arm] / lever2 + load2[arm + 1] / (d * d));
@@ -93,7 +94,7 @@ VerticalForce verticalForce(const DualArmParameters& p, const Vec3& p_DE,
   force.sum_N = force.left_N + force.right_N - p.handle_kg * kGravity_m_s2;
   EffortMap map;
   if (effortMap(p, Pose::translation(p_DE + p.p_EH), map) != Status::Ok) return force;
-  // At the midpoint, where both arms carry equal shares: a force there equals a force at H and a torque.
+  // The force acts at the midpoint, where both arms carry equal shares; it equals a force at H and a torque.
   const Vec3 p_HE = -p.p_EH;
   map.force.col(2) += map.torque * p_HE.cross(Vec3::UnitZ());
   force.both_N = alongDirection(map.force, map.weight, limits, Vec3::UnitZ());

@@ -10,13 +10,13 @@
 namespace vps::device {
 namespace {
 
-constexpr int kRounds = 6;           // most rounds of the active-set iteration; two or three suffice
+constexpr int kRounds = 6;           // greatest number of active-set iterations; two or three suffice
 constexpr double kCreep_m_s = 1e-3;  // above this speed friction has its full value. assumed: 10 um in 10 ms
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;  // angular, then linear
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-/// A V = b for the velocity after the step.
+/// The linear system A V = b for the velocity after the step.
 struct StepSystem {
   Mat6 A = Mat6::Zero();
   Vec6 b = Vec6::Zero();

@@ -7,9 +7,9 @@
 namespace vps::device {
 namespace {
 
-constexpr int kLittleBackOffs = 3;   // afterwards the part is withdrawn to before the mouth
+constexpr int kLittleBackOffs = 3;   // after these back-offs the part is withdrawn to before the mouth
 constexpr double kDeeper_m = 2e-3;   // distance beyond one mouth at which there may be another mouth
-constexpr double kFreeWay_m = 3e-3;  // three times the back-off distance: the part had left the first hole
+constexpr double kFreeWay_m = 3e-3;  // a free advance of three back-offs: the part had left the first hole
 constexpr int kSearchesDeeper = 4;   // searches at one place before the part is withdrawn to the first mouth
 
 }  // namespace
@@ -67,8 +67,8 @@ OperatorStrategy Insertion::nextSearch() const noexcept {
   return turns[count - 1 - static_cast<std::size_t>(searches_) % count];
 }
 
-// A ring that has passed one land of a stepped shaft moves on freely until it meets the next land. Its search
-// begins there, and not before the first land, which the ring would have to pass again.
+// A ring that has passed one land of a stepped shaft moves on freely until it meets the next land. The search
+// begins at the next land, and not before the first land, which the ring would have to pass again.
 void Insertion::noteNextMouth(const Feel& feel) noexcept {
   const bool went_freely = feel.along_m > approach_from_m_ + kFreeWay_m;
   if (situation_.is_slender || !went_freely || feel.along_m < situation_.mouth_m + kDeeper_m) return;

@@ -63,7 +63,7 @@ HandForce evenHand(const OperatorHabits& habits) noexcept {
 }
 
 Vec3 sagBelowHand_m(const OperatorHabits& habits, const Vec3& weight_W, double give_m_per_N) noexcept {
-  constexpr double kHeavy = 0.5;  // assumed: share of the greatest correction by sight
+  constexpr double kHeavy = 0.5;  // sag of a heavy part, as a share of see_limit_m; assumed
   const Vec3 sag_m = give_m_per_N * weight_W;
   return sag_m.norm() > kHeavy * habits.see_limit_m ? sag_m : Vec3(Vec3::Zero());
 }

@@ -10,10 +10,10 @@ constexpr double kArrivalWait_s = 0.5;  // longest wait until a way point counts
 constexpr double kRestWait_s = 2;
 constexpr double kFeel_s = 0.01;    // time constant of touch. assumed: a finger feels up to 16 Hz
 constexpr double kSoon_s = 0.2;     // time constant of the seen distance to the target along the axis
-constexpr double kLeastGain = 0.2;  // share of the first gain, so that old pictures are forgotten
+constexpr double kLeastGain = 0.2;  // least gain, as a share of the first gain: old pictures are forgotten
 constexpr double kGiveWay_per_s = 4;
-constexpr double kNear = 4;       // distance to the target, in errors of sight
-constexpr double kGuided = 0.25;  // share of tip_m_: this deep in its hole a slender part cannot tilt freely
+constexpr double kNear = 4;         // distance to the target, in errors of sight
+constexpr double kGuided = 0.25;    // share of tip_m_; deeper in its hole a slender part cannot tilt freely
 constexpr double kPivots_m = 5e-3;  // depth from which a slender part in a hole turns about the hole's mouth
 constexpr double kHome_per_s = 4;   // rate of a slender part's end towards the seen hole
 
@@ -41,7 +41,7 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   sag_m_ = sagBelowHand_m(habits_, task.weight_W, task.give_m_per_N);
   belief_.across_m = -sag_m_;
   hole_m_ = Vec3::Zero();
-  hole_seen_for_s_ = kSoon_s;  // the aim counts as much as a short look
+  hole_seen_for_s_ = kSoon_s;  // the aim has the weight of a look of this duration
   seen_for_s_ = 0;
   serve_m_ = serve_rad_ = Vec3::Zero();
   has_view_ = is_home_ = false;  // the next view gives the hand's start
@@ -183,7 +183,7 @@ void VirtualOperator::Person::lookAlong(std::size_t goal) noexcept {
 
 void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept {
   belief_.across_m = across(belief_.across_m);
-  // On earlier legs the aim error is not part of the wanted pose: wanted().
+  // On earlier legs the aim error is not part of the wanted pose: see wanted().
   if (!has_aimed_ && next_ + 2 >= path_.size()) addAim();
   hole_m_ = isSlender() ? Vec3(belief_.across_m + across(sag_m_)) : Vec3(Vec3::Zero());
   seen_for_s_ = 0;
@@ -343,7 +343,7 @@ void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
 }
 
 // The gain falls as 1/t, so that all pictures are averaged. A small tilt displaces the end of a slender part
-// by much, and a hand that followed the delayed picture would sway. For such a part the operator averages,
+// by much, and a hand that followed the delayed picture would sway. For a slender part the operator averages,
 // over all pictures, the position of the hole relative to the end as felt at the same time, and moves the end
 // there by touch.
 void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
@@ -406,7 +406,7 @@ Pose VirtualOperator::Person::wanted(double now_s) const noexcept {
   return X;
 }
 
-// The attitude of the path at this position along the leg; for a leg that only turns, at this time.
+// The attitude of the path at position `along_m` of the leg; for a leg that only turns, at the present time.
 Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
   const Pose &X_from = path_[goal_ - 1], &X_to = goal();
   const double length_m = (X_to.p - X_from.p).norm();

@@ -135,7 +135,7 @@ class VirtualOperator::Person {
   Vec3 sag_m_ = Vec3::Zero();  // displacement of a heavy part below the hand; zero for other parts
   double seen_for_s_ = 0;
   Feel feel_;
-  // Felt offset of the leading end from the grasp, and from its line.
+  // Felt offset of the leading end from the grasp, and from the line through the target.
   Vec3 lean_m_ = Vec3::Zero(), tip_felt_m_ = Vec3::Zero();
   // For a slender part: felt offset of its leading end when the end is at its hole, and the time of this
   // observation.

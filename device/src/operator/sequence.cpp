@@ -7,7 +7,7 @@
 namespace vps::device {
 namespace {
 
-// Within one turn both threads' ends meet; the rest is for the play of the hand.
+// Within one turn both threads' ends meet; the additional quarter turn is for the play of the hand.
 constexpr double kBack_rad = 1.25 * 2 * std::numbers::pi;
 
 }  // namespace
@@ -63,7 +63,7 @@ void Screwing::next(bool, const Feel& feel) noexcept {
       return start(OperatorStrategy::TurnBack, feel);
     case OperatorStrategy::TurnBack:
       if (is_coming_off_) return start(OperatorStrategy::BackOff, feel);
-      // Also without a drop: a drop into a worn or tight thread may be too small to feel.
+      // ScrewOn follows also without a drop: a drop into a worn or tight thread may be too small to feel.
       screwed_from_rad_ = feel.spin_rad;
       return start(OperatorStrategy::ScrewOn, feel);
     case OperatorStrategy::ScrewOn:

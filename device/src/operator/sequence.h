@@ -8,7 +8,7 @@
 
 namespace vps::device {
 
-/// One for each row of VPS_OPERATOR_STRATEGIES, and OperatorStrategy::None.
+/// Counts each row of VPS_OPERATOR_STRATEGIES, and OperatorStrategy::None.
 #define VPS_COUNT(Name, name) +1
 inline constexpr std::size_t kStrategies = 1 VPS_OPERATOR_STRATEGIES(VPS_COUNT);
 #undef VPS_COUNT
@@ -21,13 +21,13 @@ class Sequence {
   virtual ~Sequence() = default;
   /// Starts a search of a task; one task may have several searches.
   void begin(const Situation& situation, const Feel& feel) noexcept;
-  /// Before a new task: retries() counts from 0.
+  /// To be called before a new task: retries() then counts from 0.
   void forgetRetries() noexcept { retries_ = earlier_retries_ = 0; }
-  /// Returns Done when the part is at its target. Never Failed: the operator gives up at its timeout.
+  /// Returns Done when the part is at its target. Never returns Failed: the operator gives up at its timeout.
   Outcome step(const Feel& feel, double dt_s) noexcept;
 
   [[nodiscard]] OperatorStrategy strategy() const noexcept { return strategy_; }
-  /// The strategy in use. Not before the first begin().
+  /// The strategy in use. Not to be called before the first begin().
   [[nodiscard]] const Strategy& present() const noexcept { return of(strategy_); }
   /// Number of retries in all searches of the task.
   [[nodiscard]] int retries() const noexcept { return earlier_retries_ + retries_; }
@@ -37,7 +37,7 @@ class Sequence {
     return *strategies_[static_cast<std::size_t>(strategy)];
   }
   void start(OperatorStrategy strategy, const Feel& feel) noexcept;
-  /// After an Approach that touched.
+  /// Starts Touch after an Approach that ended with contact.
   void startTouch(const Feel& feel) noexcept;
 
   /// Clears the state of an earlier search.

@@ -12,7 +12,8 @@ constexpr int kSplitBits = 6;
 static_assert(TickHistogram::kSplit == 1 << kSplitBits);
 constexpr std::int64_t kMax_ns = (std::int64_t{1} << (kSplitBits + TickHistogram::kOctaves)) - 1;
 
-// One bucket per nanosecond below 64 ns; above, the octave and the six bits after the highest bit.
+// One bucket per nanosecond below 64 ns; above 64 ns, the octave and the six bits after the highest bit give
+// the bucket.
 std::size_t bucketOf(std::int64_t ns) {
   const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(ns, 0, kMax_ns));
   const int octave = std::max(0, static_cast<int>(std::bit_width(value)) - kSplitBits);

@@ -42,7 +42,7 @@ class Parser {
     if (!content_.damage) content_.damage = McapDamage{at, std::move(words), is_cut};
   }
 
-  /// Reads the record at `at`; returns where the next begins.
+  /// Reads the record at `at`; returns where the next record begins.
   std::size_t record(std::size_t at) {
     ByteReader in(bytes_.substr(at));
     const auto opcode = in.get<std::uint8_t>();

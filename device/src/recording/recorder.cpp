@@ -178,7 +178,7 @@ struct Recorder::Work {
   }
 
   void work() {
-    // The flag is read before the ring, so that all entries added before it was set are written.
+    // The flag is read before the ring, so that all entries added before the flag was set are written.
     for (bool is_last = false; !is_last;) {
       is_last = is_ending.load(std::memory_order_acquire);
       while (const EntryRing::Slot* slot = ring.front()) {

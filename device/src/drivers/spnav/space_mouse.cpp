@@ -36,7 +36,7 @@ bool mayBeRunning() {
          access("/var/run/spnav.sock", F_OK) == 0;
 }
 
-/// libspnav's axes are x right, y up, z away from the person, which is left-handed; it turns about (rx, ry,
+/// libspnav's axes are x right, y up, z away from the person, which is left-handed; its rotation is (rx, ry,
 /// -rz) in x right, y up, z towards the person. D: x towards the person, y right, z up.
 Deflection deflectionOf(const spnav_event_motion& motion) {
   Deflection deflection;

@@ -7,10 +7,10 @@ namespace vps::device {
 namespace {
 
 constexpr double kHover_s = 1;              // three fixations
-constexpr double kApproachNear_m = 1.5e-3;  // slow from here on, so that sight can follow: ten of its errors
-constexpr double kCare = 0.6;               // share of the insertion speed, as an edge may be met at any time
+constexpr double kApproachNear_m = 1.5e-3;  // within ten errors of sight the part moves slowly: sight follows
+constexpr double kCare = 0.6;               // share of the insertion speed, as the part may hit an edge
 constexpr double kSlow_m_s = 3e-3;
-constexpr double kApproachTouch_s = 0.02;  // shorter than a tap, longer than a jerk of the start
+constexpr double kApproachTouch_s = 0.02;  // least contact: shorter than a tap, longer than a starting jerk
 // Nothing stops a part that is seen this many errors of sight beyond its target.
 constexpr double kOvershoot = 4;
 

@@ -9,18 +9,18 @@ namespace {
 
 constexpr double kGain_per_s = 1.2, kSpeedMost_m_s = 5e-3;
 constexpr double kCome_s = 2, kHold_s = 3;  // ten fixations at the target
-constexpr double kMost_s = 15;              // assumed: a person then leaves a part that sticks where it is
+constexpr double kMost_s = 15;              // assumed: after this time a person leaves a part that sticks
 constexpr double kLeastError_m = 10e-6;     // assumed: a hand does not place a part more finely
 // The picture is 0.35 s late. A part at a distance g before its target moves at 1.2 g per second, and is seen
-// 0.42 g behind its position. Averaged over three seconds, while g falls as exp(-1.2 t), that is 0.11 g: less
-// than an error of sight where g is eight errors of sight.
+// 0.42 g behind its position. Averaged over three seconds, while g falls as exp(-1.2 t), this lag is 0.11 g:
+// less than an error of sight where g is eight errors of sight.
 constexpr double kHasCome = 8;
 
 /// Holds the part where it is seen at its target, since no contact tells the position of the target. While
 /// the part moves to the target, each picture is used without averaging. Afterwards the hand averages, over
 /// all pictures, the position of the target relative to the felt position of the part: the hand overcomes
 /// friction by pushing on, and the noise of sight does not move the part. Pictures of a fast part do not
-/// count, since the picture is late and the touch is not.
+/// count, since the picture is late and the sense of touch is not.
 class PlaceBySight final : public Strategy {
  public:
   Outcome step(const Feel& feel, double dt_s) noexcept override {
@@ -48,7 +48,7 @@ class PlaceBySight final : public Strategy {
   }
 
   double home_m_ = 0;  ///< mean of `along_m` at the target, as seen
-  double held_s_ = 0;  ///< duration of that mean; 0: the part is still on its way
+  double held_s_ = 0;  ///< duration of the mean home_m_; 0: the part still moves to the target
 };
 
 }  // namespace

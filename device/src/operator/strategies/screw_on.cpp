@@ -8,7 +8,7 @@
 namespace vps::device {
 namespace {
 
-constexpr double kScrewOn_rad_s = 1.2;    // assumed, as TurnBack
+constexpr double kScrewOn_rad_s = 1.2;    // assumed, as in TurnBack
 constexpr double kScrewNear_rad_s = 0.6;  // near the target, so that sight can follow
 constexpr double kScrewNear_m = 0.5e-3;
 constexpr double kCaughtTurns = 1;  // the part must follow the thread after these turns
@@ -17,7 +17,7 @@ constexpr double kStall_rad = 0.01, kStall_s = 0.5;
 constexpr double kJamShare = 0.6;  // share of the hand's greatest torque
 
 /// Turns the part onto the thread, and compares its advance along the axis with the pitch. Done: the part is
-/// seen at its target, or it is tight. Failed: it does not follow the thread, leans, or is stuck.
+/// seen at its target, or it is tight. Failed: the part does not follow the thread, leans, or is stuck.
 class ScrewOn final : public Strategy {
  public:
   Outcome step(const Feel& feel, double dt_s) noexcept override {

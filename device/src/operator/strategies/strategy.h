@@ -12,13 +12,14 @@
 
 namespace vps::device {
 
-/// Feeling of the hand. All positions are of the part at the grasp frame G, computed from the hand's own
+/// What the hand feels. All positions are of the part at the grasp frame G, computed from the hand's own
 /// position and the coupling's deflection under the felt force. a is the axis of insertion.
 struct Feel {
   double time_s = 0;
   double along_m = 0;            ///< position along a, positive beyond the target
   Vec3 across_m = Vec3::Zero();  ///< distance from the line through the target along a
-  /// Offset of the leading end from that line; for a slender part, from where its hole was seen.
+  /// Offset of the leading end from the line through the target along a; for a slender part, from where its
+  /// hole was seen.
   Vec3 tip_m = Vec3::Zero();
   Mat3 R_hand = Mat3::Identity();  ///< rotation of the hand, in W
   double spin_rad = 0;             ///< rotation of the hand about a since the insertion began, not wrapped
@@ -72,16 +73,16 @@ struct Situation {
 inline constexpr double kInside_m = 0.5e-3;    ///< a part this far beyond the first touch is in the hole
 inline constexpr double kDropped_m = 0.15e-3;  ///< a part that drops by this much has found the hole
 inline constexpr double kCreep_m_s = 10e-3;    ///< speed at which a part is lowered onto a surface
-inline constexpr double kLower_s = 2;          ///< longest time for lowering
+inline constexpr double kLower_s = 2;          ///< longest time for lowering a part
 inline constexpr double kSettle_s = 0.3;       ///< a pressed part is at rest after this time
-inline constexpr double kLook_s = 0.6;         ///< averages what is seen: two fixations
+inline constexpr double kLook_s = 0.6;         ///< averaging time of sight: two fixations
 
 /// Sign of the rotation about a that screws the part on.
 inline double turnsOn(const ScrewTask& screw) noexcept {
   return screw.pitch_m < 0 ? -1 : 1;
 }
 
-/// Unit vector across the axis, at this angle.
+/// Unit vector across the axis, at `angle_rad`.
 inline Vec3 acrossAxis(const Vec3& axis_W, double angle_rad) noexcept {
   const Vec3 x = axis_W.unitOrthogonal(), y = axis_W.cross(x);
   return std::cos(angle_rad) * x + std::sin(angle_rad) * y;

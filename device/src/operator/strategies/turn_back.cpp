@@ -12,7 +12,7 @@ constexpr double kTurnBack_rad_s =
 constexpr double kSag_m_s = 0.2e-3;  // a part that sinks no faster slides into place and does not drop
 constexpr double kDropLeast_m = 0.06e-3;    // least drop, more than the jerks of a handle with dry friction
 constexpr double kDropPerPitch = 1.0 / 16;  // half the axial play of a coarse 6H nut on a 6g bolt
-constexpr double kSinks_m = 0.01e-3, kSunk_s = 0.15;  // sinking less than this for this time ends the drop
+constexpr double kSinks_m = 0.01e-3, kSunk_s = 0.15;  // the drop ends when the part sinks less in kSunk_s
 
 /// Turns against the thread, pressed lightly on the mouth of the other thread, until the part drops: the ends
 /// of both threads have passed each other. Failed: the part did not drop.

@@ -96,8 +96,8 @@ void forEachLine(std::string_view bytes, F f) {
 }
 
 /// The centre of the vertices, if they are so far from the origin in proportion to their extent that the
-/// shift gains at least two of the 24 bits of a float. Zero otherwise, and if a vertex cannot be read, has a
-/// weight, or continues on the next line.
+/// shift gains at least two of the 24 bits of a float. The shift is zero otherwise, and if a vertex cannot be
+/// read, has a weight, or continues on the next line.
 Vec3 shiftOf(std::string_view bytes, std::string_view keyword) {
   constexpr double kFar = 4;
   Box box;
@@ -166,7 +166,7 @@ MeshText objText(const std::string& file) {
   return rewritten(bytesOf(file), "v", [&](std::string_view line, MeshText& out) {
     const std::string_view text = line.substr(0, line.find('\n'));
     if (std::exchange(is_continued, trimmed(text).ends_with('\\'))) {
-      if (!is_dropped) out.bytes += line;  // a blank at its beginning separates two numbers
+      if (!is_dropped) out.bytes += line;  // a blank that begins the line separates two numbers
       return;
     }
     const std::string_view keyword = keywordOf(text);
@@ -203,7 +203,7 @@ std::optional<MeshText> stlText(const std::string& file) {
       !withoutByteOrderMark({first.data(), first.size()}).starts_with(kSolid))
     return std::nullopt;
   const std::string bytes = bytesOf(file);
-  // A binary file may begin with the same word.
+  // A binary STL file may begin with the word "solid" as well.
   if (bytes.find('\0') != std::string::npos) return std::nullopt;
   return rewritten(bytes, "vertex", [](std::string_view line, MeshText& out) { out.bytes += line; });
 }
@@ -211,7 +211,7 @@ std::optional<MeshText> stlText(const std::string& file) {
 std::vector<std::string> requiredExtensions(std::string_view json) {
   constexpr std::string_view kKey = "extensionsRequired";
   std::vector<std::string> names;
-  bool is_key_last = false, is_in_list = false;  // the last string is the key; the list behind it is open
+  bool is_key_last = false, is_in_list = false;  // the last string is kKey; the list of kKey is open
   std::size_t depth = 0;
   for (std::size_t at = 0; (at = json.find_first_of("\"{}[]", at)) < json.size(); ++at) {
     const char c = json[at];

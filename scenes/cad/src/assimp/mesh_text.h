@@ -32,10 +32,10 @@ MeshText objText(const std::string& file);
 std::optional<MeshText> stlText(const std::string& file);
 
 /// The names in "extensionsRequired", the extensions that a glTF file cannot be read without, from its JSON
-/// text. assimp reads such a file as if it required none. O(n).
+/// text. assimp reads a file with required extensions as if it required none. O(n).
 std::vector<std::string> requiredExtensions(std::string_view json);
 
-/// The first of these names that may change geometry and is not read; empty if there is none. Materials,
+/// The first of `names` that may change geometry and is not read; empty if there is none. Materials,
 /// textures, lights and metadata do not change geometry, and assimp reads or refuses compression by Draco.
 std::string unreadExtension(const std::vector<std::string>& names);
 

@@ -15,8 +15,8 @@ struct XmlTag {
   std::size_t from = 0, end = 0;          ///< in the text, from '<' to after '>'
   bool is_begin = false, is_end = false;  ///< "<a/>" is both
 
-  /// The value of an attribute without blanks around it; empty if there is no such attribute. References to
-  /// characters ("&lt;") are not replaced.
+  /// The value of an attribute without blanks around it; empty if the tag has no such attribute. References
+  /// to characters ("&lt;") are not replaced.
   [[nodiscard]] std::optional<std::string_view> value(std::string_view key) const;
 };
 

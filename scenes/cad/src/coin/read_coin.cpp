@@ -179,7 +179,7 @@ struct Collector {
   std::vector<std::string> damaged;
 };
 
-/// The name of the shape, or of the nearest node above it that has one.
+/// The name of the shape, or of the nearest node above it that has a name.
 std::string nameOf(const SoCallbackAction& action) {
   const SoPath* path = const_cast<SoCallbackAction&>(action).getCurPath();
   for (int i = path->getLength() - 1; i >= 0; --i) {

@@ -10,7 +10,7 @@
 
 namespace vps::scenes {
 
-/// @invariant `colors` outlives the Palette and is changed only by it meanwhile.
+/// @invariant `colors` outlives the Palette; meanwhile only the Palette changes `colors`.
 class Palette {
  public:
   explicit Palette(FaceColors& colors) : colors_(colors) {

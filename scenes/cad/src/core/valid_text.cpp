@@ -8,8 +8,8 @@ namespace vps::scenes {
 
 namespace {
 
-/// Number of bytes of the character at the beginning of the text; 0 if there is no valid one. Overlong forms,
-/// surrogates and values beyond U+10FFFF are not valid (table 3-7 of the Unicode Standard).
+/// Number of bytes of the character at the beginning of the text; 0 if no valid character begins the text.
+/// Overlong forms, surrogates and values beyond U+10FFFF are not valid (table 3-7 of the Unicode Standard).
 std::size_t characterSize(std::string_view text) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = at(0);

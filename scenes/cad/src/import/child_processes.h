@@ -21,14 +21,16 @@ namespace vps::scenes::import {
 /// Without fork(), and under AddressSanitizer in a program with threads, runs read() in this process.
 ///
 /// The child is a fork of this process with the calling thread alone. For a program with more threads POSIX
-/// promises little, but with glibc malloc and stdio work in the child. This is enough if `read` starts no
-/// threads and no other thread of this process uses the same library, whose locks would stay locked. Cost in
-/// addition to read(): a fork (about 1 ms for each 100 MB of this process) and one copy of the parts.
+/// promises little, but with glibc malloc and stdio work in the child. Malloc and stdio suffice if `read`
+/// starts no threads and no other thread of this process uses the same library, whose locks would stay
+/// locked. Cost in addition to read(): a fork (about 1 ms for each 100 MB of this process) and one copy of
+/// the parts.
 RawCad inOwnProcess(const std::string& file, const std::string& library, const ImportSettings& limits,
                     const Progress& progress, const std::function<RawCad(const Progress&)>& read);
 
 /// Whether a fork of this process can compute. AddressSanitizer's malloc, unlike glibc's, does not work in
-/// the fork of a program with threads: a lock that one of them held stays locked (GCC 12: the child hangs).
+/// the fork of a program with threads: a lock that one of the threads held stays locked (GCC 12: the child
+/// hangs).
 bool mayFork();
 
 /// Calls make(order[0]), make(order[1]) and so on in as many forked copies of this process as there are
@@ -39,8 +41,8 @@ bool mayFork();
 /// false, for one copy, and for one result.
 /// @param copies  0: as many as there are cores
 ///
-/// Meant for a library that is not known to be safe in threads, within a process that may start none: the
-/// child that reads a file. The copies end with this process.
+/// Meant for a library that is not known to be safe in threads, within a process that may start no threads:
+/// the child that reads a file. The copies end with this process.
 std::vector<std::string> madeInCopies(const std::vector<std::size_t>& order,
                                       const std::function<std::string(std::size_t)>& make,
                                       const std::function<void()>& done, std::size_t copies = 0);

@@ -56,7 +56,7 @@ FileFormat formatOf(const std::string& head, const std::string& file) {
   if (startsWith("DBRep_DrawableShape") || startsWith("CASCADE Topology")) return CadFormat::Brep;
   if (startsWith("glTF") || by_extension.id == CadFormat::Gltf) return CadFormat::Gltf;
   if (startsWith("\x1f\x8b")) {  // gzip: Inventor and VRML files may be compressed
-    const CadFormat inner = formatOfExtension(extensionOf(fs::path(file).stem()));  // of "part.wrl.gz"
+    const CadFormat inner = formatOfExtension(extensionOf(fs::path(file).stem()));  // "wrl" of .wrl.gz
     const bool is_vrml = by_extension.id == CadFormat::Vrml || inner == CadFormat::Vrml;
     return is_vrml ? CadFormat::Vrml : CadFormat::Inventor;
   }

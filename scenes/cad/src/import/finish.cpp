@@ -23,7 +23,8 @@ void flip(Mesh& mesh) {
   for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
-/// Applies the part of X_WP that is not rigid (scale, mirror, shear) to the vertices, and the unit to both.
+/// Applies the part of X_WP that is not rigid (scale, mirror, shear) to the vertices, and the unit to
+/// vertices and pose.
 ImportedPart inMetres(const RawPart& raw, double unit_m) {
   ImportedPart part;
   part.name = raw.name;
@@ -143,7 +144,7 @@ void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
     kept.back().face_colors = std::move(colors);
   } else {
     for (WeldedMesh& shell : shells(all.mesh)) {
-      // Name and colour come from the shape with its first vertex.
+      // A body gets name and colour from the shape with the body's first vertex.
       const Vec3 p_W = shell.mesh.vertices.front();
       const auto source = std::find_if(open.begin(), open.end(),
                                        [&](const ImportedPart& part) { return hasVertex(part, p_W); });

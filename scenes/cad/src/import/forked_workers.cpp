@@ -80,7 +80,7 @@ bool writeAll(int to, const void* data, std::size_t size) {
   return true;
 }
 
-/// Runs a copy. @param parent the process that forked it
+/// Runs a copy. @param parent the process that forked this copy
 [[noreturn]] void runCopy(pid_t parent, int to, SharedCounter& counter, const std::vector<std::size_t>& order,
                           const Make& make) noexcept {
 #ifdef __linux__

@@ -184,7 +184,7 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   /// Ends the child if it still runs.
-  /// @return the signal that ended it; 0: no signal, or the one sent here
+  /// @return the signal that ended the child; 0: no signal, or the SIGKILL of this function
   int end() {
     // A child that closed its pipe is about to end by itself, and its own signal is wanted.
     int status = 0;

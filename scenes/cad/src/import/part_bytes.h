@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Parts as bytes, for another process or another run of this program on the same machine.
 //
-// One transfer() for each type serves both directions, so that they cannot disagree: `io(pointer, size)`
-// copies the bytes of a value out or in. Values keep their layout in memory.
+// One transfer() for each type serves both directions, so that reading and writing cannot disagree:
+// `io(pointer, size)` copies the bytes of a value out or in. Values keep their layout in memory.
 #pragma once
 
 #include <array>

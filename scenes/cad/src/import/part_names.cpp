@@ -67,7 +67,7 @@ bool isGarbled(const std::string& name) {
 
 /// Whether the name is one long word that changes between capitals, small letters and digits at more than
 /// every other place, and at least twice from a small letter to a capital, as in identifiers of instances:
-/// "MqXw0GXkVJeNj9w4". Designations such as "DIN912M8x20A2K" and "LH_Arm_V2_01" are not random in this sense.
+/// "MqXw0GXkVJeNj9w4". Designations such as "DIN912M8x20A2K" and "LH_Arm_V2_01" do not count as random.
 bool isRandom(const std::string& name) {
   constexpr std::ptrdiff_t kLeast = 12;
   enum Kind { Separator, Digit, Capital, Small, Sign };
@@ -110,7 +110,7 @@ bool isIdentifier(const std::string& name) {
   return hex == std::ssize(name) && hex >= kLeast && std::ranges::count_if(name, isDigit) >= kLeastDigits;
 }
 
-/// How meaningful a name is. 0: not at all, 1: a word that any part could have, or a garbled or random one,
+/// How meaningful a name is. 0: not at all, 1: a word that any part could have, or a garbled or random name,
 /// 2: a real name.
 int meaningOf(const std::string& name) {
   if (!std::ranges::any_of(name, isLetter) || isOfExporter(name) || isIdentifier(name)) return 0;

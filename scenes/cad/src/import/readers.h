@@ -53,7 +53,8 @@ struct RawCad {
   }
 };
 
-// The readers, one for each library (see FormatRow). Each throws LoadError for a file that it cannot read.
+// The readers, one for each library (see FormatRow). Each reader throws LoadError for a file that it cannot
+// read.
 RawCad readOcct(const std::string& file, const FileFormat& format, const ImportSettings& settings,
                 const Progress& progress);
 /// The version of Open CASCADE; empty in a build without Open CASCADE.
@@ -87,14 +88,16 @@ inline std::string_view withoutByteOrderMark(std::string_view text) {
   return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
 }
 
-/// Converts to metres and rigid poses, welds, joins shapes to parts, makes names unique, adds warnings.
+/// Converts raw parts to metres and rigid poses, welds, joins shapes to parts, makes names unique, adds
+/// warnings.
 void finish(RawCad raw, ImportedCad& cad);
 
 /// Renames parts so that no name is repeated; a part without a name gets `fallback`.
 void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback);
 
-/// Warns that several files seem to lie each in a frame of its own, see own_frames.cpp; else empty.
-/// @param ends        for each file, the number of parts up to its last one
+/// A warning that several files seem to lie each in a frame of its own, see own_frames.cpp; empty if they do
+/// not.
+/// @param ends        for each file, the number of parts up to its last part
 /// @param query_count receives the number of distances that were computed; may be null
 std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::vector<std::size_t>& ends,
                              std::size_t* query_count = nullptr);

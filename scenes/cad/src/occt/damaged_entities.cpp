@@ -141,7 +141,7 @@ class Finder {
   }
 
   /// Whether the entity is an annotation, a style, a tolerance, an uncertainty or an unknown entity. An
-  /// entity that needs one of these is reported as damaged itself.
+  /// entity that needs such an entity is reported as damaged itself.
   static bool isNoGeometry(const Entity& entity) {
     const std::string_view type = entity->DynamicType()->Name();
     return type.starts_with("StepVisual_") || type.starts_with("StepDimTol_") ||

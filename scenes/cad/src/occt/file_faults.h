@@ -30,14 +30,14 @@ bool capitalizeExponents(std::string& text);
 
 struct Damage {
   std::string lost_geometry;  ///< in words; empty: all geometry that the file's parts need was read
-  std::string remark;  ///< on entities that are left out without loss of geometry; empty: there are none
+  std::string remark;  ///< on entities that are left out without loss of geometry; empty: no such entities
 };
 
 /// Finds entities that could not be read and cost geometry. Open CASCADE continues with null pointers, zeros
 /// or defaults in their place. In STEP, an entity costs geometry if a shape of a product refers to it, at any
 /// depth, unless the unread data is only a name, a pcurve that accompanies a curve in space, an uncertainty,
-/// or an annotation or placement that accompanies a shape. In IGES, it costs geometry if it is a curve,
-/// surface, solid, transformation, or an instance of one of these. O(entities and references).
+/// or an annotation or placement that accompanies a shape. In IGES, an entity costs geometry if it is a
+/// curve, surface, solid, transformation, or an instance of one of these. O(entities and references).
 Damage damageOf(const Handle(Interface_InterfaceModel) & model);
 
 /// Gives predefined colours without a name, on which Open CASCADE crashes, an empty name.
@@ -48,7 +48,7 @@ void nameColors(const Handle(Interface_InterfaceModel) & model);
 /// Open CASCADE assumes millimetres for a file without a unit, and accepts a negative factor.
 struct LengthUnits {
   bool is_stated = true;  ///< at least one shape has a unit
-  std::string remark;     ///< on shapes without a unit in a file where others have one; empty: there are none
+  std::string remark;     ///< on shapes without a unit in a file where other shapes have units; empty: none
   std::string fault;      ///< a unit whose factor is not positive, in words; empty: there is none
 };
 

@@ -120,7 +120,7 @@ class Tree {
     bool has_color;
     bool is_by_faces = false;  ///< `color` is the colour of most of the faces
     std::vector<std::optional<Color>>
-        of_faces;  ///< colours of the tessellation's faces; empty: no face has one
+        of_faces;  ///< colours of the tessellation's faces; empty: no face has a colour
   };
 
   /// Calls f(component) for each component of an assembly.
@@ -177,7 +177,8 @@ class Tree {
         label == product ? X_WParent
                          : X_WParent * affine(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
     Color own{};
-    // The instance's colour overrides its product's; a colour above applies only where both have none.
+    // The instance's colour overrides its product's; a colour of an assembly applies only where both have
+    // none.
     const bool is_instance_colored = label != product && colorOf(label, own);
     const bool has_own = is_instance_colored || colorOf(product, own);
     const Color* color = has_own ? &own : color_above;
@@ -280,7 +281,7 @@ class Tree {
   }
 
   /// The solid's colour, or else the colour that covers most area among its coloured faces. False if neither
-  /// exists.
+  /// colour exists.
   bool colorOf(const TopoDS_Shape& shape, Color& out, bool& is_by_faces) const {
     const auto has = [&](const TopoDS_Shape& s) {
       Quantity_Color c;
@@ -314,7 +315,7 @@ class Tree {
   std::map<std::string, std::vector<Piece>> products_;
   UniqueNames instances_;
   std::vector<TopoDS_Shape> all_shapes_;
-  std::map<std::string, std::size_t> first_shape_, shape_end_;  // of each product, in all_shapes_
+  std::map<std::string, std::size_t> first_shape_, shape_end_;  // ranges of products in all_shapes_
   TessellatedShapes tessellated_;
 };
 
@@ -405,7 +406,7 @@ RawCad read(const std::string& file, const FileFormat& format, const ImportSetti
   }
   Document document;
   if (format.id == CadFormat::Step) {
-    STEPCAFControl_Controller::Init();  // defines the parameter below
+    STEPCAFControl_Controller::Init();  // defines the parameter that is set below
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     STEPCAFControl_Reader reader;
     transfer(reader, file, format, document.get(), settings, cad);

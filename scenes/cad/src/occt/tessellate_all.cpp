@@ -57,7 +57,7 @@ void addEdge(const TopoDS_Edge& edge, ShapeTrace& trace) {
 
 void addFace(const TopoDS_Face& face, ShapeTrace& trace) {
   trace.kinds.push_back(face.Orientation());
-  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);  // in the face's location
+  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);  // placed by the face's location
   if (surface.IsNull()) {
     trace.kinds.push_back(-1);
     return;

@@ -91,7 +91,7 @@ double deviationOf(const TopoDS_Face& face, double enough) {
   TopLoc_Location location;
   const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
   if (triangulation.IsNull() || !triangulation->HasUVNodes()) return 0;
-  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);  // in the face's location
+  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);  // placed by the face's location
   if (surface.IsNull()) return 0;
   Handle(ShapeAnalysis_Surface) nearest;
   double worst = 0;

@@ -15,7 +15,7 @@
 namespace vps::scenes::import {
 
 /// Triangles of a shape, in its length unit (a metre has units_per_m of them), outward for a solid. Faces of
-/// one shape share the points of their common edges, so welding closes it.
+/// one shape share the points of their common edges, so welding closes the mesh.
 struct Tessellation {
   /// A face, and the number of its triangles, which are consecutive in the mesh.
   struct Face {
@@ -27,8 +27,8 @@ struct Tessellation {
   Mesh mesh;
   std::vector<Face> faces;
   /// Greatest of these lengths [m]: distance of a triangle's centre from its exact face; error of the volume
-  /// divided by the surface's area, if the volume is wrong; square root of the error of a face's area, if
-  /// that is wrong.
+  /// divided by the surface's area, if the volume is wrong; square root of the error of a face's area, if the
+  /// area is wrong.
   double deviation_m = 0;
   double deflection_m = 0;     ///< deflection in use: the requested one, or more, see ImportSettings
   int missing = 0;             ///< faces without triangles
@@ -55,7 +55,7 @@ Tessellation compared(const TopoDS_Shape& shape, const ImportSettings& settings,
 /// the triangulation: a point of the surface for each triangle, and the volume of a solid.
 Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m);
 
-/// A warning about a part that is coarser or less accurate than requested; empty if it is not.
+/// A warning about a part that is coarser or less accurate than requested; empty for any other part.
 std::string inWords(const Tessellation& tessellation, const ImportSettings& settings);
 
 }  // namespace vps::scenes::import

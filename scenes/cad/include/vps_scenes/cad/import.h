@@ -23,13 +23,13 @@ enum class PartPer {
   /// Each solid, closed surface or object of the file. Open groups of an OBJ file that together are closed
   /// become one part, and so do connected shapes of VRML, since exporters write a shape for each face.
   Body,
-  Object,  ///< each object, group or shape of the file, also where open ones together are closed
+  Object,  ///< each object, group or shape of the file, also where open ones together form a closed surface
   File,    ///< the whole file, under the file's name
 };
 
 struct ImportSettings {
   /// Metres per file unit, for formats without a unit (STL, OBJ, PLY, ...); empty: such a file is refused.
-  /// Files that state their unit (STEP, IGES, glTF, 3MF, Collada, Inventor with Units) ignore it.
+  /// Files that state their unit (STEP, IGES, glTF, 3MF, Collada, Inventor with Units) ignore this setting.
   std::optional<double> unit_m;
   /// Greatest distance between a curved face and its triangles [m] (STEP, IGES).
   double deflection_m = 1e-6;
@@ -47,8 +47,8 @@ struct ImportSettings {
   bool guesses_up = false;
   PartPer part_per = PartPer::Body;
   /// Runs the format's library in a child process (POSIX), so that a crash on a damaged file becomes a
-  /// LoadError. False: runs it in this process, for a debugger, or in a program whose other threads use Open
-  /// CASCADE or Coin.
+  /// LoadError. False: runs the library in this process, for a debugger, or in a program whose other threads
+  /// use Open CASCADE or Coin.
   bool in_own_process = true;
   /// Limits of the child process, which is ended with a LoadError when it exceeds one of them.
   std::uint64_t most_memory_bytes = 0;  ///< 0: half of the machine's memory
@@ -64,12 +64,12 @@ struct ImportedPart {
   Pose X_WP;         ///< pose in the assembly
   Color color = {0.7f, 0.72f, 0.75f};  ///< linear RGB; the colour of most of the area if faces differ
   /// Greatest distance of the mesh from the faces that the file describes exactly (STEP, IGES, BREP): the
-  /// setting, or the measured distance if that is greater; empty for a file of meshes.
+  /// deflection of the settings, or the measured distance if greater; empty for a file of meshes.
   std::optional<double> deflection_m = {};
   std::string note =
       {};  ///< deviation of the mesh from the exact faces in words, also among the warnings; empty: none
   /// Names of the assemblies that contain the part, from the outermost, then the name of its product, if the
-  /// format has a tree (STEP, IGES, 3MF). Names of instances are unique: a repeated one becomes "<name>_2"
+  /// format has a tree (STEP, IGES, 3MF). Names of instances are unique: a repeated name becomes "<name>_2"
   /// and so on.
   std::vector<std::string> within = {};
   /// Greatest distance of the part's vertices from their places in the file, or from their places before the
@@ -98,14 +98,14 @@ struct ImportedCad {
 VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
                                      const Progress& progress = {});
 
-/// Reads the parts of several files in one frame, as if they were one file with the name of the first. Adds a
-/// warning if the files seem to lie in frames of their own, that is, if the parts of each file lie about the
-/// origin and overlap the parts of another file.
+/// Reads the parts of several files in one frame, as if they were one file with the name of the first file.
+/// Adds a warning if the files seem to lie in frames of their own, that is, if the parts of each file lie
+/// about the origin and overlap the parts of another file.
 VPS_SCENES_API ImportedCad importCad(const std::vector<std::string>& files,
                                      const ImportSettings& settings = {}, const Progress& progress = {});
 
-/// Whether files with this extension (".step", "STL", with or without its point) are CAD or mesh files that
-/// importCad() reads. assimp may read a file of another extension as well.
+/// Whether files with this extension (".step", "STL", with or without its leading point) are CAD or mesh
+/// files that importCad() reads. assimp may read a file of another extension as well.
 VPS_SCENES_API bool isCadExtension(std::string_view extension);
 
 /// Parts that move as one body.
