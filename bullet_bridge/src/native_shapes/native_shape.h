@@ -12,7 +12,7 @@ class btCollisionShape;
 
 namespace vps::bullet {
 
-/// Signed distance [m], negative inside, and the outward unit normal there.
+/// Signed distance [m], negative inside, and the outward unit normal of the surface.
 struct SurfaceDistance {
   double distance_m = 0;
   Vec3 n = Vec3::Zero();
@@ -41,8 +41,8 @@ struct NativeShapeMesh {
   bool is_sheet = false;
 };
 
-/// Greatest number of triangles of a native shape. More would take over a gigabyte and stall a step for
-/// seconds. Assumed.
+/// Greatest number of triangles of a native shape. More triangles would take over a gigabyte and stall a step
+/// for seconds. Assumed.
 inline constexpr std::size_t kMaxNativeTriangles = 4'000'000;
 
 /// Makes the triangles of a shape. native_shapes.md lists, for each type, how they are made and their

@@ -12,8 +12,8 @@ namespace vps::bullet {
 
 namespace {
 
-// Area of a corner, which penalty contact needs: a square of half a millimetre. Assumed: as much as a shell
-// point represents.
+// Area of a corner, which penalty contact needs: a square of half a millimetre. Assumed: a corner represents
+// as much area as a shell point.
 constexpr double kCornerArea_m2 = 0.25e-6;
 
 struct Corners {
@@ -40,7 +40,7 @@ Corners cornersOf(const Solid& surface, bool is_sheet) {
   return corners;
 }
 
-/// The node of some points, from number `first` of a shell.
+/// Shell node over these points, of which the first one has index `first` in the shell.
 ShellNode nodeOver(std::span<const Vec3> points, std::uint32_t first) {
   Box box;
   for (const Vec3& p : points) box.add(p);

@@ -147,7 +147,7 @@ class SphereHull {
   void considerPair(int i, int j) {
     const Vec3 between = spheres_[j].center - spheres_[i].center;
     const double length = between.norm(), a = (spheres_[i].radius_m - spheres_[j].radius_m) / length;
-    if (!(std::abs(a) < 1)) return;  // one contains the other
+    if (!(std::abs(a) < 1)) return;  // one sphere contains the other
     const Vec3 u = between / length;
     Vec3 w = from(i) - u * u.dot(from(i));
     if (!(w.norm() > 1e-12 * length)) w = u.unitOrthogonal();  // on the axis all directions are equal

@@ -77,7 +77,8 @@ struct PointNormals {
 
 constexpr double kOnSurface_m = 1e-6;
 
-// Surface nearest to a point. Mesh repair may move a part's surface, so that the point lies on none exactly.
+// Surface nearest to a point. Mesh repair may move a part's surface, so that the point lies on no surface
+// exactly.
 std::uint16_t nearestSurface(const ShapeModels& models, const Vec3& p_M) {
   std::uint16_t nearest = 0;
   double least_m = models.shell->spacing_m;
@@ -130,7 +131,7 @@ PointNormals findNormals(const ShapeModels& models) {
 }
 
 // Sheets contribute no edges: whether an edge of a sheet is a ridge or a groove depends on the side from
-// which it is met. Points and features act there.
+// which it is met. At sheets, points and features act instead of edges.
 EdgeSet edgesOf(const std::vector<Surface>& surfaces) {
   std::vector<EdgeSegment> segments;
   for (std::size_t i = 0; i < surfaces.size(); ++i)

@@ -12,7 +12,7 @@ class btTriangleCallback;
 
 namespace vps::bullet {
 
-/// In the shape's frame.
+/// Tree of the triangles of a Shape, in the shape's frame.
 class Shape::TriangleTree {
  public:
   TriangleTree(const Mesh& mesh, const Pose& X_SM);

@@ -74,7 +74,7 @@ struct TurnReports {
 void reportClampedTurn(TurnReports& reports, std::span<btCollisionObject* const> bodies, double dt_s);
 
 /// Reports once bodies in contact that turn too far against each other in a step.
-/// @param w_rad_s  rate of their relative rotation
+/// @param w_rad_s  rate of the bodies' relative rotation
 void reportContactTurn(TurnReports& reports, const btCollisionObject& body0, const btCollisionObject& body1,
                        double w_rad_s, double dt_s);
 

@@ -175,7 +175,8 @@ void Solver::Work::applyLaws() {
   for (IslandBody& b : island.bodies) b.effective_inverse = b.effective_mass.llt().solve(Mat6::Identity());
 }
 
-// Replaces the couplings' laws that are not valid at the present velocities. Returns true if all were valid.
+// Replaces the couplings' laws that are not valid at the present velocities. Returns true if all laws were
+// valid.
 bool Solver::Work::updateLaws() {
   bool is_converged = true;
   for (ActiveCoupling& h : active_couplings) {
@@ -196,7 +197,7 @@ SolveOutcome Solver::Work::solveContacts(const SolverSettings& settings) {
 // The law of a coupling at its limit depends on the solution, and so do the limits of friction. Solves,
 // updates laws and limits, and solves again if they changed.
 SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings) {
-  const int rounds = is_penalty ? 20 : 6;  // assumed; limits of couplings converge in two or three
+  const int rounds = is_penalty ? 20 : 6;  // assumed; limits of couplings converge in two or three rounds
   SolveOutcome last;
   int most_steps = 0;
   SolverSettings left = settings;
@@ -204,7 +205,7 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings) {
     applyLaws();
     last = solveContacts(left);
     most_steps = std::max(most_steps, last.steps);
-    if (is_penalty) left.iteration_limit -= last.steps;  // each evaluates thousands of points
+    if (is_penalty) left.iteration_limit -= last.steps;  // each step evaluates thousands of points
     if (round == rounds - 1 || left.iteration_limit <= 0)
       break;  // not converged: laws and limits of the last solution remain
     const bool has_settled_friction = !is_penalty || penalty.updateLimits() < kSettledShare;

@@ -14,10 +14,11 @@ namespace vps::bullet {
 
 namespace {
 
-// Contact of a point that is inside the other body near one of its edges and is not first along the nearest
-// face. Example: a corner slides down a wall, a micrometre inside, to the wall's lower rim. The point entered
-// through another face at that edge. The same holds for a point on the edge: where edges lie flush, rounding
-// decides on which side the point is, and the next face would be half a millimetre deep.
+// Contact of a point that is inside the other body near one of that body's edges and does not satisfy
+// isFirstAlong() for the nearest face. Example: a corner slides down a wall, a micrometre inside, to the
+// wall's lower rim. Such a point entered through another face at the edge. A point on the edge is treated
+// alike: where edges lie flush, rounding decides on which side the point is, and the next face would be half
+// a millimetre deep.
 Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
   Exact best;
   if (!refiner.other.shape) return best;
@@ -59,8 +60,8 @@ bool slidesOnto(const Exact& end, const Exact& now, const Vec3& way_W) {
 // The line between two edges turns fast as they pass each other, and would stop a point that is about to pass
 // without contact. The contact is therefore taken from the surface that the point faces at the end of the
 // step, unless the point overlaps it there. The plane of that surface may lie beyond the point's present
-// position by the free motion of the step. That surface must not push, so the contact is no deeper than it is
-// now.
+// position by the free motion of the step. Such a surface must not push, so the contact is no deeper than it
+// is now.
 Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own, const Vec3& way_W,
                   double max_m) {
   Exact end = refiner.at(own.movedTo(own.p_W + way_W), max_m + way_W.norm());
@@ -103,9 +104,9 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
   // The field's error is below a voxel; a surface farther away is not the one that the field measured.
   const double field_error_m =
       other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : kSamePlace_m;
-  // The line between edges that do not touch yet turns as the edges pass each other. Used as a contact normal
-  // it would stop a body that slides over the seam of two plates. The check of the solved step finds edges
-  // that meet.
+  // The line between edges that do not touch yet turns as the edges pass each other. Used as a contact
+  // normal, this line would stop a body that slides over the seam of two plates. The check of the solved step
+  // finds edges that meet.
   const bool leaves_edges = motion.is_checked && side.shape && other.shape &&
                             !side.shape->features().isEmpty() && !other.shape->features().isEmpty();
   constexpr double kResting_m = FeatureMotion::kKeptGaps * FeatureMotion::kRest_m;
@@ -122,8 +123,8 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     const double max_m = std::abs(c.distance_m) + field_error_m;
     Exact exact = refiner.at(own, std::abs(c.distance_m) + kFaceError_voxels * field_error_m);
     if (!exact.is_contact && !exact.found_all) exact = refiner.at(own, max_m);
-    // Outside an edge the field may read less than half of the distance, with a normal that no face has. Such
-    // a plane would stop or lift a body that does not come near the point.
+    // Outside an edge the field may read less than half of the distance, with a normal that no face has. A
+    // plane of the field would then stop or lift a body that does not come near the point.
     if (!exact.found)
       if (Candidate by_field = c; motion.canTouch(by_field))
         exact = refiner.at(own, max_m + motion.dt_s * motion.velocityAt(c.p_W).norm());

@@ -14,7 +14,7 @@ namespace {
 
 // Distance of a point from the triangle of a face. The nearest triangle is mostly this one or a neighbour, so
 // the distance bounds the search of the mesh. The limit includes the search's own rounding, so that the
-// result has the same bits.
+// result has the same bits as without the limit.
 double distanceTo(const FacePoint& face, const Pose& X_WM, const Vec3& p_W) {
   const Mesh& mesh = face.surface->distance->mesh();
   const auto& t = mesh.triangles[face.triangle];

@@ -27,12 +27,12 @@ struct FacePoint {
 FacePoint ownFace(const Candidate& c, const SideView& side);
 
 /// Moves a candidate along its part's surface to the place of least gap to the other curved surface, if that
-/// place is within the shell's spacing. p_W, distance and normal are then measured there, on the exact
-/// surfaces. Without this step a ball of 5 mm with points 0.5 mm apart lies 12 um deeper between its points,
-/// and the normals of the points around the contact lean by 0.05 rad, which is felt in sliding.
+/// place is within the shell's spacing. p_W, distance and normal are then measured at the new place, on the
+/// exact surfaces. Without this step a ball of 5 mm with points 0.5 mm apart lies 12 um deeper between its
+/// points, and the normals of the points around the contact lean by 0.05 rad, which is felt in sliding.
 /// @param c  refined candidate of a point on a face; its normal is that of the other surface at the nearest
 /// point
-/// @param their  that nearest point, on a face of the other surface
+/// @param their  nearest point of the other surface, on one of its faces
 /// @param max_gain_m  greatest accepted decrease of the gap. Candidates are found by the gaps of their
 /// points,
 ///   so a contact whose gap decreases by more than the search margin would appear and disappear.
@@ -46,8 +46,8 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
                    double max_gain_m);
 
 /// Moves a candidate to the place of its part's curved surface that is nearest to a point q near an edge of
-/// the other surface. p_W, distance and normal are then measured there. The plane at the shell's point, up to
-/// a spacing away, would lie outside a round face, and lean.
+/// the other surface. p_W, distance and normal are then measured at the new place. The plane at the shell's
+/// point, up to a spacing away, would lie outside a round face, and lean.
 /// @param from_q_W  p - q
 /// @return false if the candidate is unchanged, since the face is flat or the nearest place is not on a face
 bool moveToFoot(Candidate& c, const SideView& side, const Vec3& from_q_W);
@@ -64,11 +64,11 @@ void moveToClosest(Candidate& c, const SideView& side, const Vec3& from_q_W);
 double roundReach_m(const btCollisionShape& primitive, double spacing_m);
 
 /// Moves a candidate of `side` on a face from its shell point to the place where that face touches the
-/// primitive, if that place is nearer. It is found as the primitive's extreme point against the face's normal
-/// and the nearest point of the part's exact surface. The extreme point belongs to the primitive's solid, so
-/// the distance is never less than the true one. Exact for a flat face. Returns false, and changes nothing,
-/// for points on edges, parts without exact surfaces, flat sides of primitives, and where the distance would
-/// not decrease.
+/// primitive, if that place is nearer. The place is found as the primitive's extreme point against the face's
+/// normal and the nearest point of the part's exact surface. The extreme point belongs to the primitive's
+/// solid, so the distance is never less than the true one. The distance is exact for a flat face. Returns
+/// false, and changes nothing, for points on edges, parts without exact surfaces, flat sides of primitives,
+/// and where the distance would not decrease.
 bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
                    const btCollisionShape& primitive);
 

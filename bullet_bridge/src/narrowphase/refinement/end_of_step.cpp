@@ -66,7 +66,7 @@ void measureAtEnd(const PairView& pair, const RelativeMotion& motion, const Sett
       sliding.push_back(k);
       ends.push_back(c);
       ends.back().p_W = side.X_WM * pair.shape[i]->models().shell->points[c.id];
-      ends.back().n_W.setZero();  // stays so if the point is then out of reach
+      ends.back().n_W.setZero();  // stays zero if the point is out of reach at the end
     }
     if (ends.empty()) continue;
     refine(ends, side, other, *pair.wrapper[1 - i]->getCollisionShape(), still,

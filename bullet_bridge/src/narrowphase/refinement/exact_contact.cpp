@@ -97,13 +97,13 @@ Foot footOn(const btCollisionShape& primitive, const Pose& X_WS, const Vec3& p_W
 
 // Where two smooth areas meet, the contact takes the normal of the curved surface that the facets
 // approximate. A facet's normal gives the same gap but not the change of the gap in sliding: each step would
-// end slightly above or below the prediction. Closing these gaps slowed a frictionless nut on its thread by 9
-// % (384 facets a turn).
+// end slightly above or below the prediction. Closing the gaps of facets slowed a frictionless nut on its
+// thread by 9 % (384 facets a turn).
 //
 // Elsewhere a point on a face must keep its own tangent plane clear of the other part, so the contact takes
 // its own normal. The normal of the other part would be wrong near edges: the plane of a chamfer, met
 // slightly below the chamfer's rim, would stop a peg that slides past. A point on an edge has no tangent
-// plane, so it takes the normal of the other's face.
+// plane, so it takes the normal of the other part's face.
 Exact contactAt(const Foot& foot, const OwnPoint& own) {
   Exact exact;
   exact.found = exact.found_all = foot.found;
@@ -116,8 +116,8 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   exact.is_contact = own.edges.empty() || is_edge_on_edge
                          ? is_facing
                          : own.isFirstAlong(foot.normal) || (is_facing && !own.is_two_sided);
-  // Where the point's edge continues towards the face, a later point of the edge, or its crossing with the
-  // face's border, is nearer. A curved surface has no border between its facets and may bend towards the
+  // Where the point's edge continues towards the face, a point farther along the edge, or its crossing with
+  // the face's border, is nearer. A curved surface has no border between its facets and may bend towards the
   // edge, so it is excepted.
   if (own.is_edge && !foot.is_edge && !foot.is_sheet && !foot.is_curved && own.leadsOn(foot.normal))
     exact.is_contact = false;

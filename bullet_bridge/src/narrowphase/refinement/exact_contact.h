@@ -54,8 +54,8 @@ struct Exact {
   bool is_edge_on_edge = false;
   bool is_smooth = false;                           ///< two smooth faces touch flush
   bool is_own_face = false, is_their_face = false;  ///< the face that gives the contact plane
-  bool is_curved = false;                           ///< the other's facet approximates a curved surface
-  FacePoint face;              ///< the other's face, if is_their_face and not a primitive
+  bool is_curved = false;                           ///< the other part's facet approximates a curved surface
+  FacePoint face;              ///< the other part's face, if is_their_face and not a primitive
   std::uint16_t surface = 0;   ///< index of the surface of the other side
   Vec3 from_q = Vec3::Zero();  ///< the point minus the nearest point of the surface
 };

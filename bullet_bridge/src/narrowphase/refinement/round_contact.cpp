@@ -34,7 +34,7 @@ Point onCircle(int axis, double radius_m, double height_m, const Vec3& direction
 
 Point onCylinder(const btCylinderShape& shape, const SurfaceDistance& at, const Vec3& p, const Vec3& inward) {
   const int axis = shape.getUpAxis();
-  if (at.is_edge || std::abs(at.n[axis]) > 0.5) return {};  // at its rim or its end
+  if (at.is_edge || std::abs(at.n[axis]) > 0.5) return {};  // at a rim or an end
   return onCircle(axis, shape.getRadius(), p[axis], inward);
 }
 
@@ -114,7 +114,7 @@ double leastRadius_m(const btCollisionShape& shape) {
     case CYLINDER_SHAPE_PROXYTYPE:
       return static_cast<const btCylinderShape&>(shape).getRadius();
     case CONE_SHAPE_PROXYTYPE:
-      return 0;  // at its tip
+      return 0;  // at the tip of the cone
     case MULTI_SPHERE_SHAPE_PROXYTYPE: {
       const auto& spheres = static_cast<const btMultiSphereShape&>(shape);
       double least_m = 1e30;

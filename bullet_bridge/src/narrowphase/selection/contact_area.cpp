@@ -34,7 +34,7 @@ Moments momentsAt(const Vec3& r) {
   return m;
 }
 
-// Integrals of these polynomials over the surface that a point represents.
+// Integrals of the polynomials of momentsAt() over the surface that a point represents.
 Moments momentsOf(const Candidate& c, const Vec3& center, double length_m) {
   const Mat3 spread = c.area_spread.cast<double>() / (length_m * length_m);
   Moments m = momentsAt((c.areaCenter_W() - center) / length_m);
@@ -70,8 +70,8 @@ std::uint8_t sideOfLess(const std::vector<Candidate>& all) {
 }
 
 // Moves the contacts of curved faces that lie flush in each other to the middle of their areas, as far as
-// points touch there. Such faces need no contact at the rim against tipping, and a contact at the rim of a
-// thread would hold more friction than the thread does.
+// points touch there. Curved faces that lie flush need no contact at the rim against tipping, and a contact
+// at the rim of a thread would hold more friction than the thread does.
 void moveToMiddle(const std::vector<Candidate>& all, const std::vector<Candidate>& areas,
                   std::vector<Candidate>& chosen) {
   if (std::none_of(chosen.begin(), chosen.end(), [](const Candidate& c) { return c.is_flush; })) return;

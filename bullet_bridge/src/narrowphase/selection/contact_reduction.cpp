@@ -17,9 +17,9 @@ namespace {
 constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 
 // Two measures of urgency are needed. The gap at the end of free motion finds the points that are about to
-// touch. But contact changes that motion: a light part on a stiff coupling, turned by its contacts against
-// the coupling's pull, sank 25 um at points that free motion would have lifted. The present gap therefore
-// counts equally.
+// touch. But contact changes the free motion: a light part on a stiff coupling, turned by its contacts
+// against the coupling's pull, sank 25 um at points that free motion would have lifted. The present gap
+// therefore counts equally.
 enum class Measure { Now, EndOfStep };
 
 double urgency(const Candidate& c, Measure measure) {
@@ -66,7 +66,8 @@ Brief briefOf(const Candidate& c, double cell_m, const Pose& X_GW, std::uint32_t
               c.was_contact};
   constexpr double kMost = 1e9;  // cells from the origin; positions beyond share one cell
   // Evenly spaced points and flat faces would lie on the borders of cells, where rounding decides; these
-  // offsets, as shares of a cell, prevent that. Tested by the bridge's tests in single precision.
+  // offsets, as shares of a cell, prevent that. The offsets are tested by the bridge's tests in single
+  // precision.
   constexpr double kOffset[3] = {0.05, 0.079, 0.104};
   const Vec3 p_G = X_GW * c.p_W;
   for (int k = 0; k < 3; ++k)
@@ -210,11 +211,11 @@ void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, doubl
       selected.push_back(candidates[i]);
       spread.select(i);
     };
-    // First the contacts that carried load in the last step, since dropping one causes a jolt; at most half
-    // of the limit, so that new contacts are selected too.
+    // First selects the contacts that carried load in the last step, since dropping one of them causes a
+    // jolt; at most half of the limit, so that new contacts are selected too.
     for (std::size_t i = 0; i < count && selected.size() < limit / 2; ++i)
       if (candidates[i].impulse_Ns > 0) select(i);
-    // Then the most urgent candidate by each measure.
+    // Then selects the most urgent candidate by each measure.
     for (const Measure measure : {Measure::Now, Measure::EndOfStep}) {
       std::size_t first = 0;
       for (std::size_t i = 1; i < count; ++i)

@@ -20,7 +20,7 @@ double roundedUp(double cutoff_m, double most_m) {
 }
 
 // Greatest overlap of edges that counts as a crossing. At greater depth shell points lie inside and act
-// instead. Assumed.
+// instead of the crossing. Assumed.
 double edgeDepth_m(const PairView& pair, double cutoff_m) {
   return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kEdgeDepthShare * queryRange_m(pair))
                                           : cutoff_m;
@@ -32,14 +32,14 @@ double edgeDepth_m(const PairView& pair, const Selection& last, double cutoff_m)
   return mayOverlap(last, kEdgeDepthShare * cutoff_m) ? edgeDepth_m(pair, cutoff_m) : cutoff_m;
 }
 
-// The motion of body 0 relative to body 1 in a time of the step, in W.
+// The motion of body 0 relative to body 1 during a time within the step, in W.
 Pose displacementIn(const PairView& pair, const RelativeMotion& motion, double t_s) {
   const Vec3 center = pair.center_W();
   const Mat3 R = rotationFromVector(t_s * motion.V.w);
   return {R, center + t_s * motion.velocityAt(center) - R * center};
 }
 
-// Body 1 in body 0, in their models' frames, after the step's motion.
+// Pose of body 1's models' frame in body 0's models' frame, after the step's motion.
 Pose poseAfterStep(const PairView& pair, const RelativeMotion& motion) {
   const Pose step = displacementIn(pair, motion, motion.dt_s);
   return (step * pair.side(0).X_WM).inverse() * pair.side(1).X_WM;

@@ -15,7 +15,7 @@ namespace vps::bullet {
 
 /// Appends the points that are nearer to the other side than the cutoff, of both sides if Settings::sides is
 /// Both. A pair's state makes repeated queries cheaper; points beyond the cutoff may then be included, and
-/// where many points are near only the most urgent of each place is.
+/// where many points are near only the most urgent point of each place is.
 /// @param motion  with a state: the bodies' motion from their present poses
 void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                          PairState* state = nullptr, const RelativeMotion* motion = nullptr);
@@ -28,7 +28,7 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
                     PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 
 /// Appends the candidates of the step. A body that moves less than the query range is queried once, at its
-/// present pose. The same holds for a body that is fast only because it turns in place (turnsInPlace()); the
+/// present pose. A body that is fast only because it turns in place (turnsInPlace()) is queried once too; the
 /// check of the solved step finds the contacts that this query lacks. Any other fast body is queried at
 /// several places along its path, so that it cannot tunnel; the plane that a point meets first then holds for
 /// the whole step.
@@ -76,13 +76,13 @@ bool hasNotMoved(const Selection& selection, const PairView& pair, const Relativ
 /// time of the selection [m].
 double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
 
-/// Motion that carries a selection's planes to the present poses. Within kSamePlace_m this is as good as a
-/// query.
+/// Motion that carries a selection's planes to the present poses. Within kSamePlace_m the carried planes are
+/// as good as a query.
 CandidateMotion motionSince(const Selection& selection, const PairView& pair);
 
-/// True if bodies meet within the step at a contact with restitution. Bullet's own solver then lets them
-/// bounce at once, with the right speed but early by less than a step's travel. bullet::Solver solves for the
-/// gap and applies restitution.h.
+/// True if bodies meet within the step at a contact with restitution. Bullet's own solver then lets the
+/// bodies bounce at once, with the right speed but early by less than a step's travel. bullet::Solver solves
+/// for the gap and applies restitution.h.
 /// @param gap_m, predicted_m  the gap now, and at the end of the step in free motion
 bool meetsWithBounce(double restitution, double gap_m, double predicted_m, double dt_s);
 
@@ -103,11 +103,11 @@ void shareAreas(const std::vector<Candidate>& all, double length_m, std::vector<
 
 /// Nearest points of two bodies within `wanted_m`, beyond the range of the fields, measured by the exact
 /// surfaces: the nearest place around the nearest shell point of either side, and the points that are farther
-/// by no more than a tenth of the spacing. Only the spheres and triangles that can hold them are visited, so
-/// the cost hardly depends on `wanted_m`.
+/// by no more than a tenth of the spacing. Only the spheres and triangles that can hold such points are
+/// visited, so the cost hardly depends on `wanted_m`.
 std::vector<Candidate> nearestFarPoints(const PairView& pair, double wanted_m, Context& context);
 
-// The two contact methods. Each sets state.contacts for the coming step; selectPenalty() also sets
+// The two contact methods. Each method sets state.contacts for the coming step; selectPenalty() also sets
 // state.penalty.
 
 void selectRigid(const PairView& pair, PairState& state);

@@ -15,9 +15,9 @@ namespace vps::bullet {
 
 namespace {
 
-// Refines the points on edges. Such a point has no normal of its own, and the field has its greatest errors
-// near the other side's edges: 14 um at the root of an M10 thread with voxels of 0.2 mm, with normals that
-// follow the grid. A nut supported by unrefined points lost 21 % of its acceleration.
+// Refines the points on edges. A point on an edge has no normal of its own, and the field has its greatest
+// errors near the other side's edges: 14 um at the root of an M10 thread with voxels of 0.2 mm, with normals
+// that follow the grid. A nut supported by unrefined points lost 21 % of its acceleration.
 void refinePenaltyPoints(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                          std::vector<Candidate>& candidates) {
   // Candidates of a fast body were found elsewhere along its path.
@@ -67,7 +67,7 @@ bool reusePenaltyPoints(const PairView& pair, PairState& state, CandidateMotion&
 /// Updates a pair's points from candidates (ascending by key), which `moved` carries from the poses of their
 /// query to the present ones. Points that remain keep bend, force and tolerated overlap.
 /// @param usual_N_per_m3  stiffness per area of surfaces without a value of their own
-/// @param sides  number of sides whose points are queried. They share the stiffness, since their areas
+/// @param sides  number of sides whose points are queried. Both sides share the stiffness, since their areas
 /// overlap
 void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates,
                          const PairMaterial& material, double usual_N_per_m3, int sides,

@@ -46,7 +46,7 @@ class ImpactProjection {
 
   /// @param chosen  for each row, whether it takes part
   /// @param tolerance_m_s  smaller violations are ignored
-  /// @param v  velocities before; on return, after the impulses
+  /// @param v  velocities before the impulses; on return, velocities after the impulses
   /// @param p_Ns  impulse of each row, within its limits; 0 if not chosen
   /// Cost per row that joins: one product for each row, and k^2 operations for k active rows.
   void solve(std::span<const std::uint8_t> chosen, double tolerance_m_s, std::vector<Vec6>& v,

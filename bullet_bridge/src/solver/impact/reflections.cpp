@@ -18,7 +18,7 @@ class Impact {
       if (isContact(row)) fastest_m_s_ = std::max(fastest_m_s_, -row.velocity(before));
   }
 
-  /// Computes v(t) of the header. The remaining work budget is shared with the `others` values of t that
+  /// Computes v(t) of reflections.h. The remaining work budget is shared with the `others` values of t that
   /// follow.
   [[nodiscard]] ImpactState at(double t, const std::vector<Vec6>& before, std::size_t others) {
     if (projection_.work() >= kMostImpactWork) return inelastic(before);

@@ -8,7 +8,7 @@
 //
 // 1. Project: v0 = the velocities without approach that are nearest to v in the norm of M, an inelastic
 //    impact. The set {J v >= 0} is a cone, so <v0 - v, v0> = 0: the lost energy is that of v0 - v.
-// 2. Reflect: v + 2 (v0 - v), an elastic impact. By the same equation it has the energy of v exactly.
+// 2. Reflect: v + 2 (v0 - v), an elastic impact. By the same equation the result has the energy of v exactly.
 //
 // Elastic impacts follow each other, as along Newton's cradle: only the contacts that approach are reflected,
 // together, until none approaches [Smith, Kaufman, Vouga, Tamstorf and Grinspun 2012, "Reflections on
@@ -18,12 +18,12 @@
 // Contacts with a restitution e between 0 and 1, and contacts of different e. Let v(t) be the velocities if
 // the contacts with e > t are elastic and the others inelastic. The result is the mean of v(t) over t from 0
 // to 1. If all contacts have the same e, the mean is (1 - e) v(1) + e v(0). Each v(t) has no approach and at
-// most the energy of v. The same holds for the mean, because both sets are convex.
+// most the energy of v. So has the mean of v(t), because both sets of velocities are convex.
 //
 // Inelastic contacts beside elastic ones: first v is projected onto the inelastic ones, then reflected at the
 // elastic ones that approach, where the inelastic ones react with twice the impulse of a projection. (A body
-// that rests on a table and is hit from the side bounces sideways and stays on the table.) Both steps keep
-// the statements above. Rows of joints are two-sided inelastic rows.
+// that rests on a table and is hit from the side bounces sideways and stays on the table.) Projection and
+// reflection both keep the statements above. Rows of joints are two-sided inelastic rows.
 //
 // Energy is measured relative to bodies that contact does not move. Every impulse acts on both bodies along
 // one line, so momentum is conserved to rounding, whether or not an iteration has converged.

@@ -50,8 +50,8 @@ int Restitution::rootOf(int body) const {
 }
 
 // Finds the gap at which each contact counts as touching. Sharp features rest at a gap and hold the faces
-// between them at that gap, so all contacts of a face within it touch. If only the contacts of a face's edges
-// touched, a face that lands flush would turn, since the contacts of one edge may be missing.
+// between them at that gap, so all contacts of a face within this gap touch. If only the contacts of a face's
+// edges touched, a face that lands flush would turn, since the contacts of one edge may be missing.
 void Restitution::findTouch(std::span<const RigidContact> contacts) {
   std::map<std::pair<const btCollisionObject*, const btCollisionObject*>, double> rest_m;
   const auto restOf_m = [&](const RigidContact& c) -> double& { return rest_m[{c.object[0], c.object[1]}]; };
@@ -203,7 +203,7 @@ void Restitution::settleFriction(Contact& c, double limit_Ns, double& most_m_s) 
 
 void Restitution::settle() {
   Group& g = group_;
-  // First without friction: an exact solution, also for flush faces with dozens of contacts.
+  // The impact is first solved without friction, which is exact also for flush faces with dozens of contacts.
   std::vector<double> p;
   ImpactProjection(g.rows).solve(std::vector<std::uint8_t>(g.rows.size(), 1), kRoundingSpeed_m_s, g.v, p);
   const auto limitOf_Ns = [&](std::size_t k) {

@@ -10,22 +10,22 @@
 //    bodies approached each other before the step, faster than the threshold of Bullet's
 //    btContactSolverInfo. The gravity of the step itself does not count as approach, so a body at rest does
 //    not bounce.
-// 2. Bounce: the velocities before the step, referred to the end pose and with the kick of the time up to
-//    the impact, are reflected (reflections.h). The solution's impulses acted along the lines of the start.
-//    The angular momentum that the displacement changes thereby is given back as one rotation of the group.
-//    Given back to single bodies, it would make a light body between heavy ones spin without bound.
+// 2. Bounce: the velocities before the step, referred to the end pose and with the kick of the time up to the
+//    impact, are reflected (reflections.h). The solution's impulses acted along lines at the start poses. The
+//    angular momentum that the displacement changes thereby is given back as one rotation of the group. Given
+//    back to single bodies, this momentum would make a light body between heavy ones spin without bound.
 // 3. Settle: the external impulses are added again, and contacts that then approach (a part that rests on
 //    another) are stopped, with Coulomb's friction, whose limit is that of the whole normal impulse of the
 //    step. The sweeps start from the impulses of the solution. Friction only reduces slip.
 //
 // Time of the impact. Bullet adds the kick of gravity and other forces, dt f / m, to the velocity and then
-// moves the body (symplectic Euler). Its poses lie exactly on a parabola, whose velocity there is the stored
-// one plus half a kick. The velocity at an impact at time tau of the step is the stored velocity plus (1/2 +
-// tau / dt) of the kick. The velocity at the impact is reflected, and half a kick is subtracted from the
-// result, which gives the velocity to store. The rest of the step's kick, 1 - tau / dt, would only act after
-// the displacement, which ends at the contact: contacts that were hit keep their velocities in it. A body
-// therefore bounces e^2 times as high at each impact, for any step size. Bodies that rest on contacts or hang
-// on joints do not approach by the kick, since these stop it.
+// moves the body (symplectic Euler). The body's poses lie exactly on a parabola, whose velocity at each pose
+// is the stored velocity plus half a kick. The velocity at an impact at time tau of the step is the stored
+// velocity plus (1/2 + tau / dt) of the kick. The velocity at the impact is reflected, and half a kick is
+// subtracted from the result, which gives the velocity to store. The rest of the step's kick, 1 - tau / dt,
+// would only act after the displacement, which ends at the contact: contacts that were hit keep their
+// velocities in this rest of the kick. A body therefore bounces e^2 times as high at each impact, for any
+// step size. Bodies that rest on contacts or hang on joints do not approach by the kick, since these stop it.
 //
 // The impulses of the restitution act at the end pose, on both bodies along one line. Linear and angular
 // momentum are therefore conserved to rounding, although the displacement does not match the end velocities.
@@ -40,9 +40,9 @@
 // not converged. The masses are those of the bodies, not the effective ones: a coupling's spring and damper
 // have no share in an impact.
 //
-// A shortened step (endEarly()) bounces as well. Its end poses are not exactly those of the contacts, but a
-// bounce needs only the velocities before the step and the loaded contacts. Momentum and energy are kept as
-// above.
+// A shortened step (endEarly()) bounces as well. The end poses of such a step are not exactly those of the
+// contacts, but a bounce needs only the velocities before the step and the loaded contacts. Momentum and
+// energy are kept as above.
 #pragma once
 
 #include <cstdint>
@@ -80,7 +80,7 @@ class Restitution {
     double touch_m = 0;      // gap at which the bodies count as touching
   };
   struct Group {
-    std::vector<int> bodies;  // of the island
+    std::vector<int> bodies;  // indices in the island
     std::vector<Mat6> inverse_mass;
     std::vector<Vec6> impulse;   // change of momentum in the step by all impulses of the solution
     std::vector<Vec6> external;  // change of velocity by everything except contacts and joints
@@ -119,10 +119,10 @@ class Restitution {
 
   const Island& island_;
   JointRows& joints_;
-  std::vector<int> parent_;      // parent of each body in the union-find forest of groups
-  std::vector<int> local_;       // index of each body in group_; -1 for bodies of other groups
-  std::vector<double> touch_m_;  // gap whether the bodies of each contact touch at which its bodies touch
-  std::vector<std::uint8_t> touches_;  // of each contact
+  std::vector<int> parent_;            // parent of each body in the union-find forest of groups
+  std::vector<int> local_;             // index of each body in group_; -1 for bodies of other groups
+  std::vector<double> touch_m_;        // gap of each contact at which its bodies touch
+  std::vector<std::uint8_t> touches_;  // whether the bodies of each contact touch
   Group group_;
 };
 

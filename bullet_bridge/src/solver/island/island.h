@@ -131,7 +131,7 @@ class Island {
   std::unordered_map<const btCollisionObject*, int> index_;
 };
 
-/// Constant angular velocity W of a free body's rotation in a step. With it the body keeps both angular
+/// Constant angular velocity W of a free body's rotation in a step. With W the body keeps both angular
 /// momentum and energy, and a body that spins about a principal axis turns at exactly its angular velocity.
 /// All vectors are in the body's principal frame B.
 ///
@@ -144,7 +144,7 @@ class Island {
 /// Wong 1991; with h = dt / 2 their ALGO_C1, which turns a spinning disc too slowly by (w dt)^2 / 12.]
 ///
 /// If |W| dt is above pi / 4, Bullet turns a body by less: by 2 atan(h |W|) with h = tan(pi / 8) / (pi / 4)
-/// dt. Momentum and energy are kept with that h too.
+/// dt. Momentum and energy are kept with Bullet's h too.
 ///
 /// @param inertia_kg_m2  principal moments J, positive
 /// @param w_B            angular velocity before the step, with the torques that act in it [rad/s]

@@ -65,7 +65,7 @@ void IslandMatrix::makePattern() {
         targets_.push_back(&blockAt(later_[s], later_[t]));
 }
 
-// @param row, column  places
+// @param row, column  places in the order of elimination
 Mat6& IslandMatrix::blockAt(int row, int column) {
   if (row == column) return diagonal_[static_cast<std::size_t>(row)];
   const auto place = static_cast<std::size_t>(std::min(row, column));

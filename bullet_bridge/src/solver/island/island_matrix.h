@@ -43,7 +43,7 @@ class IslandMatrix {
   [[nodiscard]] Mat6& blockAt(int row, int column);
 
   std::size_t body_count_ = 0;
-  std::vector<std::pair<int, int>> pairs_, wanted_;  // lower body first; ascending
+  std::vector<std::pair<int, int>> pairs_, wanted_;  // lower body first in each pair; ascending
   std::vector<int> place_, body_;  // place of each body in the order of elimination; body at each place
   // For each place: the later places with which it has blocks, ascending.
   std::vector<std::size_t> first_;

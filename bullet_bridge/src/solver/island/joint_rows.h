@@ -50,8 +50,8 @@ class JointRows {
   /// Adds the rows of an enabled joint.
   void add(btTypedConstraint& joint, const Island& island, const btContactSolverInfo& info);
   /// Makes the end velocities along rows without limits equal to the displacement's, and adds the impulses
-  /// for that. The two velocities differ because a body's inertia turns with it; without this correction the
-  /// body would leave its hinge, by half of the effect of the hinge's torque in a step.
+  /// for that. End velocity and displacement differ because a body's inertia turns with it; without this
+  /// correction the body would leave its hinge, by half of the effect of the hinge's torque in a step.
   void hold(const Island& island, std::span<BodyEnd> ends);
   /// Writes the impulses to the joints and their feedback, and disables joints that break.
   void finish(double dt_s);

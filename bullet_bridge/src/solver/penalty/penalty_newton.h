@@ -2,7 +2,7 @@
 // Penalty contact: finds the end-of-step velocities at which inertia, couplings and thousands of penalty
 // points balance.
 //
-// They minimise a convex function, the incremental potential of an implicit Euler step,
+// These velocities minimise a convex function, the incremental potential of an implicit Euler step,
 //
 //     1/2 (u - u0)' M (u - u0) + sum 1/2 k min(gap + dt n.v, 0)^2 + sum H(bend + dt v_t)
 //
@@ -46,7 +46,7 @@ class PenaltyNewton {
   /// if the iteration limit was reached or a value is not finite.
   SolveOutcome solve(double residual_m_s, int iteration_limit, End end = End::Short);
   /// Greatest change of the bodies' velocities by the missing momentum at the velocities evaluated last.
-  /// After a solve with End::Balanced these are the bodies' velocities.
+  /// After a solve with End::Balanced the velocities evaluated last are the bodies' velocities.
   [[nodiscard]] double imbalance_m_s();
   /// Updates the limits of friction from the present forces. Returns the greatest change, relative to the
   /// greatest limit.
@@ -67,7 +67,7 @@ class PenaltyNewton {
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
 
   /// Joints are modelled as dampers of velocity error, so stiff that they miss their target by a millionth.
-  /// At a limit the slope of their potential is constant, as for a bristle.
+  /// At a limit the slope of the dampers' potential is constant, as for a bristle.
   void prepareJoints();
   [[nodiscard]] double jointImpulse(const JointRow& row, double stiffness_kg,
                                     const std::vector<Vec6>& u) const;

@@ -14,12 +14,12 @@ class btPersistentManifold;
 
 namespace vps::bullet {
 
-/// A point of one side near the other's surface: a spring along the normal and a bristle in the tangent plane
-/// (vps/friction.h). Spring and bristle are fixed to the point, so friction holds without creep.
+/// A point of one side near the other side's surface: a spring along the normal and a bristle in the tangent
+/// plane (vps/friction.h). Spring and bristle are fixed to the point, so friction holds without creep.
 struct PenaltyPoint {
   std::uint64_t key = 0;       ///< contactKey() of the point
   Vec3 p_W = Vec3::Zero();     ///< now
-  Vec3 n_W = Vec3::Zero();     ///< unit, from body 1 to body 0
+  Vec3 n_W = Vec3::Zero();     ///< unit normal, from body 1 to body 0
   double gap_m = 0;            ///< present gap plus tolerated_m
   double k_N_per_m = 0;        ///< stiffness of spring and bristle: stiffness per area times area
   double mu = 0;               ///< coefficient of friction
@@ -65,7 +65,7 @@ struct PointGroup {
 /// would creep. At level 0, and for contacts of a manifold, each point is a group. O(points).
 void groupPoints(const PenaltyPair& pair, int level, std::vector<PointGroup>& groups);
 
-/// Greatest level. A group is then as large as an eighth of a face of a cube with 20,000 points.
+/// Greatest level. At this level a group is as large as an eighth of a face of a cube with 20,000 points.
 inline constexpr int kCoarsestLevel = 8;
 
 /// Lowest level at which the pairs have at most `limit` groups, at most kCoarsestLevel; 0 for a limit of 0.

@@ -35,7 +35,8 @@ class PenaltyPatch {
   /// greatest change and limit [N].
   void updateLimits(const Vec6& twist, double& change, double& greatest);
   /// Writes forces and bends at a twist to the pair's points. The points of a group share its force by their
-  /// stiffness and have the same bend, so that another grouping in the next step goes on from there.
+  /// stiffness and have the same bend, so that another grouping in the next step starts from the same forces
+  /// and bends.
   void finish(const Vec6& twist) const;
 
   [[nodiscard]] std::size_t pointCount() const { return points_.size(); }
@@ -51,7 +52,7 @@ class PenaltyPatch {
 
  private:
   struct Point {
-    Vec3 r;  // from the centre
+    Vec3 r;  // vector from the centre
     Vec3 n;
     double k;
     double mu;

@@ -11,9 +11,9 @@ namespace vps::bullet {
 // solves the whole island at once.
 SolveOutcome ContactLoop::solveContacts(const SolverSettings& settings) {
   constexpr int kSweepsFirst = 30,
-                kSweepsPerNewtonStep = 10;  // assumed; the second is the ratio of the costs
-  // An arch of 101 stones needs 120 steps of Newton's method until it stands. With 60 it keeps moving, and
-  // needs as many in each step.
+                kSweepsPerNewtonStep = 10;  // assumed; kSweepsPerNewtonStep is the ratio of the costs
+  // An arch of 101 stones needs 120 steps of Newton's method until it stands. With 60 steps the arch keeps
+  // moving, and needs 60 steps of Newton's method again in each time step.
   constexpr int kStepsPerBody = 3;
   // A lower limit costs more time than convergence: each step would then be solved repeatedly for the
   // contacts that it misses.

@@ -21,8 +21,8 @@ struct btContactSolverInfo;
 
 namespace vps::bullet {
 
-/// Bodies, joints and contacts of one problem, and the checks of its pairs. The caller fills them; the memory
-/// is reused for the next problem.
+/// Bodies, joints and contacts of one problem, and the checks of its pairs. The caller fills these lists; the
+/// memory is reused for the next problem.
 class ContactLoop {
  public:
   Island island;
@@ -70,7 +70,7 @@ class ContactLoop {
 
   EvenPressure pressure_{island};
   ContactNewton newton_{island, joints};
-  std::vector<MissedContact> missed_;  // of the last check
+  std::vector<MissedContact> missed_;  // contacts missed in the last check
   std::vector<Vec6> u_;                // scratch
   double dt_s_ = 0;
 };

@@ -181,7 +181,7 @@ void ContactNewton::moveTo(double share) {
 }
 
 // Takes Newton's step, or a share of it. Returns false if no share reduces the missing momentum. The whole
-// step usually does, so the derivatives for the next step are computed with it.
+// step usually reduces the missing momentum, so the derivatives for the next step are computed with it.
 bool ContactNewton::step() {
   constexpr double kSufficient = 1e-2;  // required share of the reduction that a linear equation would have
   if (!findStep()) return false;

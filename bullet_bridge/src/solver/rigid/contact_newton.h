@@ -11,18 +11,19 @@
 // (method of multipliers) and leaves no error. Rounds begin soft, where Newton's method converges well, and
 // become stiffer. Sticking and slipping need no separate cases.
 //
-// The term mu |v_t| is De Saxce's. Without it a sliding contact would separate at that speed. The term mu
+// The term mu |v_t| is De Saxce's. Without this term a sliding contact would separate at the speed mu |v_t|.
+// The term mu
 // |v_t| makes the matrix of Newton's method unsymmetric, and the equation is not the condition of a minimum.
 // A step, or a share of it, is therefore accepted if it reduces the momentum that the equation misses. If no
-// share does, a step of the convex problem with the present value of the term is taken instead; its exact
-// line search makes progress from any point. A round that still does not converge is repeated with more
-// compliance.
+// share reduces this momentum, a step of the convex problem with the present value of the slip term is taken
+// instead; its exact line search makes progress from any point. A round that still does not converge is
+// repeated with more compliance.
 //
-// If the term were taken from the previous round, the rounds would converge linearly only: of 47 problems of
-// ten brackets that lie on each other, 30 were solved in 60 steps, instead of 46.
+// If the slip term were taken from the previous round, the rounds would converge linearly only: of 47
+// problems of ten brackets that lie on each other, 30 were solved in 60 steps, instead of 46.
 //
-// Sources: De Saxce and Feng 1998 for the term of slip; Alart and Curnier 1991 for Newton's method on it;
-// Castro, Permenter and Han 2022 for the convex problem; Rockafellar 1976 for the proximal steps.
+// Sources: De Saxce and Feng 1998 for the term of slip; Alart and Curnier 1991 for Newton's method with this
+// term; Castro, Permenter and Han 2022 for the convex problem; Rockafellar 1976 for the proximal steps.
 #pragma once
 
 #include <span>
@@ -39,7 +40,7 @@ class ContactNewton {
   ContactNewton(Island& island, JointRows& joints) : island_(island), joints_(joints) {}
 
   /// Updates the impulses of contacts and joints and the bodies' velocities. The contacts' rows must be
-  /// prepared. If it does not converge, the impulses are still within their cones. Cost of a step: a
+  /// prepared. If the method does not converge, the impulses are still within their cones. Cost of a step: a
   /// factorisation (IslandMatrix), and about 0.2 us a contact.
   /// @param residual_m_s  converged if no contact misses its law by more than a tenth of this velocity, and
   ///   the impulses' velocities differ from the solution by no more than this at any point of a body
@@ -79,7 +80,7 @@ class ContactNewton {
   struct Joint {
     JointRow* row;
     double softness, next_Ns;  ///< velocity per impulse; impulse at the velocities evaluated last
-    bool is_free;              ///< that impulse is within the row's limits
+    bool is_free;              ///< next_Ns is within the row's limits
   };
   void start(std::span<const RigidContact> contacts);
   void gather(std::span<const RigidContact> contacts);

@@ -49,7 +49,7 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
       double v = 0;  // the motion of kinematic bodies does not belong to the push
       for (const ContactRow::Side& side : c.normal.side)
         if (side.body >= 0) v += side.J.dot(body(side).u);
-      // The overlaps to be removed may contradict each other, as for a jammed part, so they are restored
+      // The overlaps to be removed may contradict each other, as for a jammed part, so they are removed
       // softly. Gaps of sharp features are a hard limit: no other row's push may reduce them.
       const double W = c.normal.W;
       double p = c.push_m_s <= 0 || c.is_sharp ? c.p_push + (std::min(0.0, c.push_m_s) - v) / W : 0;

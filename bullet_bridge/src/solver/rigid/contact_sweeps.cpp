@@ -128,7 +128,7 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
       contacts_.push_back(c);
       continue;
     }
-    // The impulse of a contact that is let go would make the start worse than none; see start().
+    // The impulse of a contact that is let go would make a worse start than zero; see start().
     if (!m.is_let_go) {
       c.p_n = same->p_n;
       c.p_t[0] = same->p_t[0];

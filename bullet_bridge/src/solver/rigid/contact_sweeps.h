@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Constraint contact: projected Gauss-Seidel over joints and the few contacts in Bullet's manifolds.
 //
-// Signorini's condition in the normal direction (gap at the end of the step >= 0), Coulomb's cone (not a
-// pyramid) in the tangent plane. A second, frictionless solve then removes overlap; its velocities move the
-// bodies once and are discarded, so that no energy is added (split impulse). Neither solve includes
-// restitution: see restitution.h. Sources: Catto 2005 (sequential impulses); Jourdan, Alart and Jean 1998
-// (Gauss-Seidel for frictional contact).
+// The contact laws are Signorini's condition in the normal direction (gap at the end of the step >= 0) and
+// Coulomb's cone (not a pyramid) in the tangent plane. A second, frictionless solve then removes overlap; its
+// velocities move the bodies once and are discarded, so that no energy is added (split impulse). Neither
+// solve includes restitution: see restitution.h. Sources: Catto 2005 (sequential impulses); Jourdan, Alart
+// and Jean 1998 (Gauss-Seidel for frictional contact).
 #pragma once
 
 #include <span>
@@ -73,7 +73,7 @@ class ContactSweeps {
 
   void clear() {
     contacts_.clear();
-    push_.clear();  // they belong to another island
+    push_.clear();  // these velocities belong to another island
   }
   void add(btPersistentManifold& manifold, btManifoldPoint& point, const btContactSolverInfo& info);
   /// Prepares the rows with the bodies' effective masses, and starts from last step's impulses.

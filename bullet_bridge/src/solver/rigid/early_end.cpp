@@ -18,7 +18,7 @@ class Held {
   void add(int body) {
     if (body >= 0) is_held_[static_cast<std::size_t>(body)] = 1;
   }
-  /// Adds all bodies that are connected to them by joints or loaded contacts.
+  /// Adds all bodies that are connected to the held bodies by joints or loaded contacts.
   void spread(std::span<const RigidContact> contacts, const JointRows& joints) {
     bool has_grown = true;
     while (has_grown) {

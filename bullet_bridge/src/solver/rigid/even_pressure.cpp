@@ -81,7 +81,7 @@ void EvenPressure::spreadPair(std::span<RigidContact> contacts) {
     rows_.push_back(wrenchOf((contacts[i].position_W() - center) / length_m, contacts[i].normal_W()));
     wanted += contacts[i].p_n * rows_.back();
   }
-  impulses_Ns_.assign(group_.size(), 1);  // a positive value takes part
+  impulses_Ns_.assign(group_.size(), 1);  // a contact with a positive impulse takes part
   for (int round = 0; round < kMostRounds; ++round) {
     LeastSquares spread;
     for (std::size_t k = 0; k < group_.size(); ++k)
@@ -108,7 +108,7 @@ void EvenPressure::spreadPair(std::span<RigidContact> contacts) {
 }
 
 // Sliding contacts get friction along their slip; sticking ones share it in proportion to their limits.
-// Returns false if that would exceed the limits.
+// Returns false if the friction would exceed the limits.
 bool EvenPressure::spreadFriction(std::span<RigidContact> contacts, const Vec3& center, double length_m) {
   const auto slipOf = [&](const ContactRow& row) {
     return row.velocity([&](std::size_t i) -> const Vec6& { return island_.bodies[i].u; });

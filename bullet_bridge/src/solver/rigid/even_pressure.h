@@ -15,7 +15,7 @@ namespace vps::bullet {
 /// kept, and the sum of p^2 / area becomes least, as under a body on an even, soft layer. Friction is
 /// redistributed likewise. The solver then converges to the solution nearest to this start, so the even
 /// pressure remains wherever it is a solution. Impulses are not changed if the contacts determine them
-/// uniquely, or if the even ones would not all press. Cost: some 50 ns per contact and 1 us per pair.
+/// uniquely, or if the even impulses would not all press. Cost: some 50 ns per contact and 1 us per pair.
 class EvenPressure {
  public:
   explicit EvenPressure(const Island& island) : island_(island) {}
@@ -32,7 +32,7 @@ class EvenPressure {
   const Island& island_;
   std::vector<Run> runs_;
   std::vector<std::size_t> group_;  // indices of one pair's touching contacts
-  std::vector<Vec6> rows_;          // wrench of a unit impulse on each of them
+  std::vector<Vec6> rows_;          // wrench of a unit impulse at each contact of group_
   std::vector<double> impulses_Ns_;
   std::vector<std::array<double, 2>> friction_Ns_;
 };

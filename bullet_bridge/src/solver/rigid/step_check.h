@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The solver's interface to the narrow phase: which contacts does a solved step lack?
 //
-// Contacts are planes, found for the motion that is predicted before the step. Contact changes that motion: a
-// part that breaks free of a jam turns, an edge that was out of reach meets a wall, and a fast turn bends the
-// path of a point away from its plane. The solver therefore calls the check of each pair, which tells whether
-// the bodies would overlap at the solved poses, and solves the step again with the missing contacts, a
-// bounded number of times.
+// Contacts are planes, found for the motion that is predicted before the step. Contact changes the predicted
+// motion: a part that breaks free of a jam turns, an edge that was out of reach meets a wall, and a fast turn
+// bends the path of a point away from its plane. The solver therefore calls the check of each pair, which
+// tells whether the bodies would overlap at the solved poses, and solves the step again with the missing
+// contacts, a bounded number of times.
 #pragma once
 
 #include <cstddef>
