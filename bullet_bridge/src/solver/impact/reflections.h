@@ -18,7 +18,8 @@
 // Contacts with a restitution e between 0 and 1, and contacts of different e. Let v(t) be the velocities if
 // the contacts with e > t are elastic and the others inelastic. The result is the mean of v(t) over t from 0
 // to 1. If all contacts have the same e, the mean is (1 - e) v(1) + e v(0). Each v(t) has no approach and at
-// most the energy of v. So has the mean of v(t), because both sets of velocities are convex.
+// most the energy of v. The mean of v(t) has these two properties too, because both sets of velocities are
+// convex.
 //
 // Inelastic contacts beside elastic ones: first v is projected onto the inelastic ones, then reflected at the
 // elastic ones that approach, where the inelastic ones react with twice the impulse of a projection. (A body
