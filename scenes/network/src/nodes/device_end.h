@@ -31,14 +31,15 @@ class DeviceEnd {
   /// Reads the messages that have arrived.
   void poll();
 
-  /// Description of the device that joined first. Devices that replace it must have the same description.
+  /// Description of the device that joined first. Devices that replace the first device must have the same
+  /// description.
   [[nodiscard]] const HelloMessage& hello() const { return *first_; }
   /// Number of times that a device has joined so far.
   [[nodiscard]] int joins() const { return joins_; }
   /// Whether a device is in the session and has sent its description.
   [[nodiscard]] bool isPresent() const { return is_present_ && link_.isAlive(NodeRole::Device); }
 
-  /// The newest state, each once; null: none arrived since the last call.
+  /// The newest state, which is returned once; null: no state arrived since the last call.
   const HapticMessage* takeState();
   /// Time since the last state was received [s].
   [[nodiscard]] double silence_s() const;
@@ -76,7 +77,7 @@ class DeviceEnd {
   [[nodiscard]] std::string doubts() const { return ClockDoubts::summary(link_); }
   [[nodiscard]] bool isStopped() const { return stop_ != nullptr && stop_->load(); }
   void say(const std::string& words) const { say_(words); }
-  /// Whether others requested that the loop be re-armed; each request is returned once.
+  /// Whether other programs requested that the loop be re-armed; each request is returned once.
   [[nodiscard]] bool takeRearm() const { return requests_ != nullptr && requests_->takeRearm(); }
   void setFaulted(bool is_faulted) const {
     if (requests_ != nullptr) requests_->setFaulted(is_faulted);
@@ -106,7 +107,7 @@ class DeviceEnd {
   std::int64_t heard_ns_ = 0;  ///< arrival time of the last state
 };
 
-/// A hand in the device node: its driver sends each command there.
+/// A hand in the device node; the driver of the hand sends each command to that node.
 /// @param end  outlives the hand; a device must have joined
 /// @param log  log of the run; null: the run is not recorded
 std::unique_ptr<Hand> remoteHand(DeviceEnd& end, const Scene& scene, MergedLog* log = nullptr);

@@ -25,10 +25,11 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::chrono::microseconds kRequestPoll{200};  // assumed: below a haptic period
+constexpr std::chrono::microseconds kRequestPoll{
+    200};  // interval of checks for requests; assumed: below a haptic period
 constexpr std::chrono::milliseconds kSessionPoll{10};
 constexpr std::chrono::milliseconds kUntilSafe{25};  // kPeerLimit_s plus a few ticks
-constexpr int kLastStates = 4;                       // assumed: at least one of them arrives
+constexpr int kLastStates = 4;  // number of times that the last state is sent; assumed: at least one arrives
 constexpr int kPollsPerLook = 25;    // interval of checks whether the render node is alive: 5 ms
 constexpr int kPollsPerTimes = 500;  // interval of timing messages: 0.1 s
 
@@ -41,7 +42,7 @@ class SentTimes {
     newest_ = (newest_ + 1) % times_s_.size();
     times_s_[newest_] = time_s;
   }
-  /// The sent time that rounds to this one; the argument itself if there is none.
+  /// The sent time that rounds to `rounded_s`; `rounded_s` itself if there is no such time.
   [[nodiscard]] double exact_s(double rounded_s) const noexcept {
     constexpr double kRounding_s = 0.6e-6;  // half a microsecond plus rounding of doubles
     for (std::size_t age = 0; age < times_s_.size(); ++age) {
@@ -52,7 +53,7 @@ class SentTimes {
   }
 
  private:
-  std::array<double, 512> times_s_{};  // as many as the ticks whose work HapticLoop remembers
+  std::array<double, 512> times_s_{};  // as many times as the ticks whose work HapticLoop remembers
   std::size_t newest_ = 0;
 };
 
@@ -78,7 +79,7 @@ class SignsOfLife {
   std::int64_t changed_ns_ = 0, looked_ns_ = 0;
 };
 
-/// The haptic thread's end of the link. It has its own memory for reading and writing messages.
+/// The haptic thread's end of the link. The port has its own memory for reading and writing messages.
 class RemotePort final : public device::RemotePhysics {
  public:
   RemotePort(Link& link, MessageWriter& writer, const std::atomic<std::uint8_t>*& hand)
@@ -151,7 +152,8 @@ class DeviceSession {
     reader_.bindTo(link.sessionId());
     port_.remote = &remote_;
     const double physics_s = 1 / scene_.fidelity.physics_rate_hz;
-    // The scene comes from the render node, so the gains that it requests are bounded as well.
+    // The scene comes from the render node, so the scene's gains are bounded like gains that the node
+    // requests.
     most_gains_ = passiveGains(scene_, hand_->device().limits(), scene_.fidelity.physics_rate_hz);
     device::LoopSettings settings = loopSettings(scene_, hand_->device());
     settings.gains = bounded(settings.gains);
@@ -161,8 +163,8 @@ class DeviceSession {
     hand_state_ = &side_->stateByte();
   }
 
-  /// Runs the session. Returns true if it ended regularly or the user stops, false if the render node was
-  /// lost.
+  /// Runs the session. Returns true if the session ended regularly or the user stops, false if the render
+  /// node was lost.
   bool run() {
     for (int polls = 1;; ++polls) {
       if (!has_request_ && polls % kPollsPerTimes == 1) sayHello();
@@ -269,7 +271,8 @@ class DeviceSession {
     side_->carryOut(command);
     return {};
   }
-  /// Limits the gains that another node requests to those at which the device is passive; reports it once.
+  /// Limits the gains that another node requests to those at which the device is passive; reports the first
+  /// limitation.
   CouplingGains bounded(const CouplingGains& wish) {
     const CouplingGains gains = device::softerOf(wish, most_gains_);
     const bool is_bounded = gains.k_N_per_m < wish.k_N_per_m || gains.b_Ns_per_m < wish.b_Ns_per_m ||

@@ -20,14 +20,14 @@ namespace vps::scenes {
 
 namespace {
 
-/// A live device that is silent for longer than this also stops physics [s]. Assumed: longer than any
+/// A live device that is silent for longer than this time also stops physics [s]. Assumed: longer than any
 /// scheduling delay; the proxy stands still during the silence.
 constexpr double kHiccup_s = 0.1;
 constexpr double kLastLog_s =
     2;  ///< time limit for the last log entries; assumed: DDS repeats a message within a tenth of a second
 constexpr std::uint64_t kAdvancesPerDoubt =
     256;  // interval of checks for inconsistent clocks; assumed: a few times per second
-/// Number of good physics steps before the loop is re-armed, if its node allows that.
+/// Number of good physics steps before the loop is re-armed, if the device node allows re-arming.
 constexpr int kStepsUntilRearm = 50;
 
 /// Number of way points still ahead of a part at p_W: those after the leg nearest to it.
@@ -162,15 +162,16 @@ class RemoteDriver final : public ClockedDriver {
   /// that the loop does not treat the part as stalled. Not used in a recorded run, since a replay only has
   /// states of steps.
   void showThatPhysicsLives();
-  /// Sends a request; if the device is lost before it was carried out, restores the device when it is back.
+  /// Sends a request; if the device is lost before the request was carried out, restores the device when the
+  /// device is back.
   void askUntilDone(const RequestMessage& request) {
     if (!ask(request) && !end_.isStopped()) waitAndRestore();
   }
   /// Handles a lost device by waiting for it. Returns false if the run was stopped.
   bool keepDevice();
   bool waitAndRestore();
-  /// Brings a new device process to the state that the lost one had in that phase. Returns false if it was
-  /// lost again.
+  /// Brings a new device process to the state that the lost process had in `phase`. Returns false if the new
+  /// process was lost, too.
   bool restore(device::OperatorPhase phase);
   bool restoreHold(device::OperatorPhase phase);
   void rearmWhenGood();
@@ -215,7 +216,7 @@ class RemoteDriver final : public ClockedDriver {
   DeviceEnd& end_;
   const Scene& scene_;
   MergedLog* log_;                     ///< null: the run is not recorded
-  device::OperatorState known_state_;  ///< as of the last advance() or command
+  device::OperatorState known_state_;  ///< state of the hand as of the last advance() or command
   device::HapticState newest_;         ///< newest state of the loop; advance() copies it to view_
   device::PhysicsState part_;          ///< last state sent
   CouplingGains gains_;
@@ -223,7 +224,7 @@ class RemoteDriver final : public ClockedDriver {
   Pose X_WG_;                         ///< pose of the grasp of the part that the hand holds
   bool is_holding_ = false, is_clutch_open_ = false;
   bool is_running_ = false, is_wanted_ = false, has_priority_ = false;
-  int good_steps_ = 0;  ///< number since the last fault
+  int good_steps_ = 0;  ///< number of good physics steps since the last fault
   PhysicsClock clock_;
   int joins_;
   std::uint64_t interruptions_ = 0, advances_ = 0;
@@ -372,7 +373,7 @@ std::optional<RealTimeResult> RemoteDriver::realTime() {
   return result;
 }
 
-/// The remote device, as its node describes it. Only its node reads and writes the hardware.
+/// The remote device, as its node describes it. Only the device node reads and writes the hardware.
 class DistantDevice final : public device::Device {
  public:
   explicit DistantDevice(const HelloMessage& hello) : hello_(hello) {}

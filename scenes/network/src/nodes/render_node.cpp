@@ -59,7 +59,8 @@ void requirePossible(const Scene& scene, const RenderOptions& options) {
                   "contact off, or use vps assemble --real-time");
 }
 
-/// Round trip from a state of the proxy to its answer. The coupling gains depend on it, and it is reported.
+/// Round trip from a state of the proxy to its answer. The coupling gains depend on the round trip, which is
+/// also reported to the user.
 double networkDelay_s(DeviceEnd& end, const RenderOptions& options) {
   if (options.network.empty()) return 0;
   constexpr int kTries = 200;

@@ -55,7 +55,7 @@ struct SessionPointers::Work {
       SharedRegion region = SharedRegion::open(slotName(slot), false);
       const bool is_whole = region.isOpen() && region.memory().size() >= kPointerBytes;
       return is_whole && region.isTaken(NodeRole::Render) ? std::move(region) : SharedRegion();
-    } catch (const LoadError&) {  // accessible to other users, so not trusted
+    } catch (const LoadError&) {  // the region is accessible to other users, so it is not trusted
       return {};
     }
   }
@@ -66,7 +66,7 @@ struct SessionPointers::Work {
         own = SharedRegion::create(slotName(slot), kPointerBytes);
         own_slot = slot;
         writer = RingWriter(reinterpret_cast<SharedWord*>(own.memory().data()), kPointerRing);
-      } catch (const LoadError&) {  // another process was quicker
+      } catch (const LoadError&) {  // another process has taken the slot
       }
     }
   }
@@ -127,7 +127,7 @@ struct SessionPointers::Work {
       if (slot < 0) continue;
       Other& other = *others[static_cast<std::size_t>(slot)];
       if (other.reader.read(bytes, message) != Reading::Good)
-        continue;  // invalid or older than an earlier message
+        continue;  // the message is invalid or older than an earlier message
       other.heard_s = now_s;
       accept(slot, other, message, changes);
     }

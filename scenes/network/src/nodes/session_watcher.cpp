@@ -22,11 +22,11 @@ struct SessionWatcher::Work {
   std::unique_ptr<Link> link;
   Scene scene;
   std::vector<char> buffer;
-  MessageReader reader;         ///< of the render node's messages
+  MessageReader reader;         ///< reader of the render node's messages
   std::int64_t shot_ns = 0;     ///< sending time of the last snapshot, by the render node's clock
-  MessageReader device_reader;  ///< of any device's messages
+  MessageReader device_reader;  ///< reader of any device's messages
   ClockDoubts doubts;
-  HapticMessage haptic;  ///< the last one; a compact message updates only a part of it
+  HapticMessage haptic;  ///< the last message; a compact message updates only a part of its values
 };
 
 SessionWatcher::SessionWatcher(std::unique_ptr<Work> work) : work_(std::move(work)) {}
@@ -60,7 +60,7 @@ std::optional<Snapshot> SessionWatcher::takeSnapshot() {
 
 std::int64_t SessionWatcher::snapshotSent_ns() const {
   const std::int64_t now_ns = device::monotonicClock().now_ns();
-  if (work_->link->form() == WireForm::Exact) return work_->shot_ns;  // the clock of this machine
+  if (work_->link->form() == WireForm::Exact) return work_->shot_ns;  // by the clock of this machine
   const std::optional<PeerTiming> timing = work_->link->timing(NodeRole::Render);
   return timing ? sentByClockHere_ns(work_->shot_ns, timing->clock_offset_s, now_ns) : now_ns;
 }

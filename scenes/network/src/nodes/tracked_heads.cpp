@@ -27,7 +27,7 @@ struct TrackedHeads::Work {
   std::vector<Stream> streams;  ///< by viewer
   std::vector<std::string> news;
 
-  /// Moves a viewer's head. Returns false, and reports it once, if the head is behind a screen.
+  /// Moves a viewer's head. Returns false if the head is behind a screen, and reports the first such pose.
   bool move(DisplayViewer& viewer, Stream& stream, const Pose& X_SE) {
     DisplayViewer moved = viewer;
     moved.X_SE = X_SE;

@@ -13,7 +13,7 @@
 
 namespace vps::scenes {
 
-/// Sends requests and waits for answers. Used by one thread. All of its requests have the same sender.
+/// Sends requests and waits for answers. Used by one thread. All requests of an object have the same sender.
 class Asking {
  public:
   static constexpr double kLimit_s = 5;

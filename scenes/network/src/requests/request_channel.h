@@ -44,7 +44,7 @@ class ClientChannel {
   ClientChannel(const ClientChannel&) = delete;
   ClientChannel& operator=(const ClientChannel&) = delete;
   virtual void send(std::string_view bytes) = 0;
-  /// The next answer to any requester; empty: none within `limit`.
+  /// The next answer to any requester; empty: no answer came within `limit`.
   virtual std::string receive(std::chrono::milliseconds limit) = 0;
   /// Whether the render node has ended.
   [[nodiscard]] virtual bool isOver() const { return false; }
@@ -53,13 +53,14 @@ class ClientChannel {
   ClientChannel() = default;
 };
 
-/// Creates the server of a session within a machine. Throws LoadError if the session already has one.
+/// Creates the server of a session within a machine. Throws LoadError if the session already has a server.
 std::unique_ptr<ServerChannel> makeLocalServer(const std::string& session);
-/// Connects to the server of a session within a machine. Returns null if there is none.
+/// Connects to the server of a session within a machine. Returns null if there is no server.
 /// @param user  owner of the session
 std::unique_ptr<ClientChannel> findLocalServer(const std::string& session, uid_t user = getuid());
 
-/// Server and client over UDP; implemented in dds/. Both throw LoadError as joinSession() over a network.
+/// Server and client over UDP; implemented in dds/. Both functions throw LoadError as joinSession() over a
+/// network.
 std::unique_ptr<ServerChannel> makeNetworkServer(const std::string& session, const SessionNetwork& network);
 std::unique_ptr<ClientChannel> findNetworkServer(const std::string& session, const SessionNetwork& network);
 

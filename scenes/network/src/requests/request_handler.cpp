@@ -30,7 +30,8 @@ constexpr double kTransferLimit_s = 10;    // a sender repeats a piece every 0.3
 constexpr std::size_t kMostFetchers = 16;  // assumed
 constexpr double kFetchLimit_s = 5;        // a requester that waits for a recording asks every 0.3 s
 constexpr const char* kSceneEnding = ".scene";
-constexpr std::size_t kMostKept = 16;  // assumed: as many as a person works on; the newest are kept
+constexpr std::size_t kMostKept =
+    16;  // limit of stored scenes; assumed: as many as a person works on; the newest are kept
 
 template <std::size_t N>
 std::string textOf(const std::array<char, N>& text) {

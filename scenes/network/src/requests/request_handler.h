@@ -32,8 +32,8 @@ class ServedRun {
   void setDevice(const std::string& name, bool may_rearm, const CouplingGains& gains,
                  const CouplingGains& most);
 
-  /// Called when the run begins. @param file  file of its recording; empty: none. This can no longer be
-  /// changed.
+  /// Called when the run begins. @param file  file of the run's recording; empty: the run is not recorded.
+  /// The file can no longer be changed.
   void beginRecording(const std::string& file);
   /// Called when the recording's file is complete.
   void finishRecording();
@@ -43,11 +43,11 @@ class ServedRun {
   [[nodiscard]] Recorded stateOf(const std::string& file) const;
 
   struct Facts {
-    std::uint64_t number = 0;        ///< number of the run, starting at 1; 0: there was none so far
-    std::string name, hash, bytes;   ///< of the scene
+    std::uint64_t number = 0;        ///< number of the run, starting at 1; 0: there was no run so far
+    std::string name, hash, bytes;   ///< name, hash and archive of the scene
     std::vector<std::string> parts;  ///< part of each step
-    std::string recording;           ///< file of the recording, kept until the next run begins; empty: none
-    std::string device;              ///< name of the device; empty: none has joined
+    std::string recording;  ///< file of the recording, kept until the next run begins; empty: no recording
+    std::string device;     ///< name of the device; empty: no device has joined
     bool may_rearm = false;
     CouplingGains gains, most;
     bool is_running = false, has_device = false;
@@ -85,7 +85,7 @@ class RequestHandler {
   struct Client {
     MessageReader reader;
     std::string last_answer;
-    std::uint64_t heard = 0;  ///< request count at the last message
+    std::uint64_t heard = 0;  ///< value of heard_ after the client's last request
   };
   struct Answer {
     bool is_done = false;
@@ -96,14 +96,14 @@ class RequestHandler {
     std::uint64_t sender = 0;
     std::string hash, bytes;
     std::uint64_t total = 0;
-    double heard_s = 0;  ///< arrival time of its last piece, by device::monotonicSeconds()
+    double heard_s = 0;  ///< arrival time of the transfer's last piece, by device::monotonicSeconds()
   };
 
   /// A requester that wants a recording's file.
   struct Fetcher {
     std::string file;          ///< empty: the recording of the next recorded run
     std::string hash;          ///< hash of the whole file; empty: not computed yet
-    double heard_s = 0;        ///< time of its last message, by device::monotonicSeconds()
+    double heard_s = 0;        ///< time of the requester's last message, by device::monotonicSeconds()
     std::uint64_t wanted = 0;  ///< if `file` is empty: number of the first run that may be meant
   };
 
@@ -144,7 +144,7 @@ class RequestHandler {
   std::optional<Scene> next_;
   std::string recording_;
   std::optional<CouplingGains> gains_;  ///< last requested gains
-  int gains_step_ = -1;                 ///< step of the procedure during that request
+  int gains_step_ = -1;                 ///< step of the procedure when gains_ was requested
 };
 
 }  // namespace vps::scenes

@@ -35,7 +35,7 @@ void RequestServer::Work::serve() {
     if (options.stop != nullptr && options.stop->load()) ends_run = true;
     try {
       serveOne();
-    } catch (const std::exception& failed) {  // such as a lack of memory; the run continues
+    } catch (const std::exception& failed) {  // a failure such as a lack of memory; the run continues
       if (options.say) options.say(std::string("a request was not carried out: ") + failed.what());
     }
   }
@@ -85,7 +85,7 @@ std::optional<Scene> RequestServer::waitForNext() {
 
 void RequestServer::waitForFetchers() const {
   const auto is_stopped = [this] { return work_->options.stop != nullptr && work_->options.stop->load(); };
-  do std::this_thread::sleep_for(2 * kPoll);  // requests that arrive in the meantime count
+  do std::this_thread::sleep_for(2 * kPoll);  // a request that arrives during this pause is waited for, too
   while (work_->is_fetched && !is_stopped());
 }
 

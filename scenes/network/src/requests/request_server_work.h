@@ -28,7 +28,7 @@ struct RequestServer::Work {
   RequestServerOptions options;
   RunRequests requests;
   ServedRun run;
-  std::unique_ptr<ServerChannel> channel;  ///< used by the thread only, as is the handler
+  std::unique_ptr<ServerChannel> channel;  ///< channel and handler are used by the server's thread only
   RequestHandler handler;
   std::mutex mutex;  ///< guards the next two members
   std::optional<Scene> next;

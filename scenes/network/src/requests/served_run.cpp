@@ -33,7 +33,8 @@ void ServedRun::begin(const Scene& scene, std::string scene_bytes, const Link& l
   facts_.bytes = std::move(scene_bytes);
   for (const SceneStep& step : scene.steps) facts_.parts.push_back(scene.parts[step.part].part.name);
   facts_.recording = recording;
-  if (!recording.empty()) recorded_[recording] = Recorded::Growing;  // from now on others may request it
+  if (!recording.empty())
+    recorded_[recording] = Recorded::Growing;  // from now on other programs may request the recording
   facts_.is_running = true;
   link_ = &link;
 }

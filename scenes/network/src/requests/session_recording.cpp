@@ -70,7 +70,8 @@ struct SessionRecording::Work {
     is_over = true;  // set first: a thread that sees is_asked uses it to detect a refusal
     is_asked = true;
   }
-  /// Requests the recording as soon as the session exists. Returns nothing if it was refused or stopped.
+  /// Requests the recording as soon as the session exists. Returns nothing if the request was refused or the
+  /// user stops.
   std::optional<Asking> ask() {
     AskMessage message;
     message.kind = AskKind::Record;
@@ -88,7 +89,7 @@ struct SessionRecording::Work {
         if (options.say) options.say(wordsOf(answer));
         is_asked = true;
         return asking;
-      } catch (const LoadError& error) {  // usually because the session does not exist yet
+      } catch (const LoadError& error) {  // usually the session does not exist yet
         keepProblem(error.what());
         std::this_thread::sleep_for(kAppear);
       }
@@ -132,7 +133,7 @@ struct SessionRecording::Work {
     }
     failure = "the transfer of the recording was stopped before the run had ended";
   }
-  /// Tells the render node that the file has arrived, so that it does not wait.
+  /// Tells the render node that the file has arrived, so that the render node does not wait for the transfer.
   static void tellThatItIsHere(Asking& asking, const AskMessage& message) {
     try {
       asking.ask(message);
@@ -171,7 +172,7 @@ std::string SessionRecording::waitUntilAsked(double most_s) {
 }
 
 std::string SessionRecording::finish() {
-  constexpr double kLate_s = 2;  // a session that has ended answers no more
+  constexpr double kLate_s = 2;  // a session that has ended no longer answers
   if (!work_->is_asked && !waitUntilAsked(kLate_s).empty()) work_->is_ending = true;
   while (!work_->is_over) std::this_thread::sleep_for(kWait);
   return work_->failure;

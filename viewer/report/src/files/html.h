@@ -32,7 +32,8 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
 /// A two-column table: name, value.
 std::string facts(const std::vector<std::pair<std::string, std::string>>& rows);
 
-/// A picture with a caption. It links to `link` if that is not empty; both paths are relative to the page.
+/// A picture with a caption. The picture links to `link` if `link` is not empty; both paths are relative to
+/// the page.
 std::string figure(const std::string& file, const std::string& caption_html, const std::string& link = {});
 
 /// A whole page with the given body. Pictures (PNG) from `folder` that the page shows, and tables and

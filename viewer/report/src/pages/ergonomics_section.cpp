@@ -16,7 +16,8 @@ using html::format;
 
 constexpr double kPathRate_hz = 25;                                         // rate at which the path is drawn
 constexpr double kViewWidth_px = 440, kViewHeight_px = 330, kPxPerM = 190;  // size and scale of a side view
-constexpr double kGround_px = 315, kShoulders_px = 120;  // heights of the floor and the shoulders in it
+constexpr double kGround_px = 315,
+                 kShoulders_px = 120;  // vertical positions of the floor and the shoulders in a side view
 
 std::string inWholeDegrees(double rad) {
   return format(rad * 180 / std::numbers::pi, "%.0f");

@@ -16,7 +16,8 @@ namespace {
 
 using html::format;
 
-const Vec3 kToViewer(0.75, -1.25, 0.85);  // from the front, right and above, as in assembly drawings
+const Vec3 kToViewer(0.75, -1.25,
+                     0.85);  // the view is from the front, right and above, as in assembly drawings
 
 class PictureSet {
  public:
@@ -74,7 +75,8 @@ class PictureSet {
       pictures.start = save(prefix + "start.png", result_.start[i],
                             frame(snapshotBounds(drawn_, result_.start[i])), options);
     }
-    // Contact and end share a close-up of the part and its target, cut open along the direction of insertion.
+    // The pictures of contact and end share a close-up of the part and its target, cut open along the
+    // direction of insertion.
     Camera camera = frame(snapshotBounds(drawn_, result_.finished));
     if (step != nullptr) {
       const Box place_W = bounds(transformed(scene_.parts[step->part].part.mesh, placeOf(*step)));
@@ -252,7 +254,7 @@ std::string clearancePictures(const scenes::CheckResult& result) {
       legend(result.near_m);
   try {
     return out + pictures(result);
-  } catch (const std::exception& error) {  // no EGL or OpenGL here
+  } catch (const std::exception& error) {  // this machine has no EGL or OpenGL
     return out + "<p class=\"note\">These pictures are missing: " + escapeHtml(error.what()) + "</p>\n";
   }
 }

@@ -66,7 +66,8 @@ double rounded(double value, double unit) {
   return std::isfinite(value) ? std::round(value / unit) * unit : 0;
 }
 
-/// Appends a pose in mm. Positions are rounded to 0.1 um, rotations to what moves a point at 1 m by 0.1 um.
+/// Appends a pose in mm. Positions are rounded to 0.1 um, rotations to an angle that moves a point at a
+/// distance of 1 m by 0.1 um.
 void addPose(Json& to, const Pose& X) {
   for (int k = 0; k < 3; ++k) to.push_back(rounded(1e3 * X.p[k], 1e-4));
   const Eigen::Quaterniond q(X.R);

@@ -13,13 +13,13 @@ namespace vps::viewer {
 
 struct RunView {
   std::string html;     ///< empty if the view could not be made
-  std::string missing;  ///< the reason, with a remedy
+  std::string missing;  ///< reason why there is no view, with a remedy
 };
 
 /// A view that turns under the mouse or a finger, and plays and scrubs the run. The page embeds three.js and
-/// needs no other file, so it works by mail, in any browser with WebGL; other browsers show a message. All
-/// parts together have at most kRunViewTriangles, and the view has kRunViewRate_hz poses a second. Without
-/// three.js on this machine there is no view. O(triangles log triangles + rows).
+/// needs no other file, so the page works when sent by mail, in any browser with WebGL; other browsers show a
+/// message. All parts together have at most kRunViewTriangles, and the view has kRunViewRate_hz poses a
+/// second. Without three.js on this machine there is no view. O(triangles log triangles + rows).
 RunView runView(const scenes::Scene& scene, const scenes::AssembleResult& result);
 
 inline constexpr std::size_t kRunViewTriangles = 150000;

@@ -31,9 +31,9 @@ struct Column {
 std::string histogram(const std::vector<Column>& columns, const std::string& left_text,
                       const std::string& right_text, const std::string& caption_html);
 
-/// Two pictures side by side: the whole section, and a close-up of the place, each with a scale bar. The
-/// inner part is blue, the outer part tan, their overlap red, other parts grey. `id` makes names unique
-/// within a page.
+/// Two pictures side by side: the whole section, and a close-up of the place of the overlap or fit, each with
+/// a scale bar. The inner part is blue, the outer part tan, their overlap red, other parts grey. `id` makes
+/// names unique within a page.
 std::string sectionSvg(const scenes::CheckResult& result, const scenes::CheckedSection& section,
                        std::size_t id);
 

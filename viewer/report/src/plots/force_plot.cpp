@@ -101,7 +101,7 @@ PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const s
   for (std::size_t i = 0; i < curves.size(); ++i) addPoints(script, names[i], curves[i]);
   addPoints(script, "depth", depth);
 
-  // Impacts as triangles and slides as bars along the top of the first panel, above every curve.
+  // Impacts are triangles and slides are bars along the top of the first panel, above every curve.
   double greatest_N = 0, least_N = 0;
   for (std::size_t k = 0; k < 4; ++k)
     for (const auto& [t, value] : curves[k]) {
@@ -137,7 +137,7 @@ PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const s
   script += "set multiplot\nset lmargin at screen 0.075\nset rmargin at screen 0.83\n";
   script += "set xrange [" + number(start_s) + ":" + number(end_s) + "]\nset format x \"\"\n";
   script += shadePhases(trace);
-  // Three panels, one below the other, on one time axis.
+  // The plot has three panels, one below the other, on one time axis.
   script += "set tmargin at screen 0.94\nset bmargin at screen 0.60\n" + keyAt(0.94) +
             nameSteps(trace, step_names, true);
   script +=

@@ -64,8 +64,8 @@ struct BrickMatrices {
 /// Stiffness and mass of a brick. Energy is integrated over the filled region only, so that a thin wall
 /// inside a brick keeps its place and thickness. Quadratic displacements can bend such a wall in any
 /// direction: a wall of a sixth of a brick is as accurate as a wall of a whole brick. Trilinear elements with
-/// incompatible modes cannot: with a wall of half a brick, frequencies were 20 % too high. Source: Parvizian,
-/// Duester and Rank, "Finite cell method", Comput. Mech. 41, 2007.
+/// incompatible modes cannot bend a wall in any direction: with a wall of half a brick, frequencies were 20 %
+/// too high. Source: Parvizian, Duester and Rank, "Finite cell method", Comput. Mech. 41, 2007.
 BrickMatrices brickMatrices(const Vec3& size_m, const Elasticity& material, const BrickFilling& filling);
 
 template <class IsFilled>

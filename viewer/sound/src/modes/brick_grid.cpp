@@ -11,12 +11,13 @@ namespace {
 using Place = std::array<int, 3>;
 using IsInside = std::function<bool(const Vec3& p_P)>;
 
-constexpr double kLeastFill = 0.002;  // share of a brick; bricks with less are left out
-constexpr int kCells = 6;             // cells along each edge of a brick ...
-constexpr double kThinFill = 0.1;     // ... and twice as many in a brick with a smaller filled share
-constexpr int kSamples = 4;           // samples along each edge of a cell that the surface cuts
-// Stiffness of the empty region of a cut brick, as a share of the material's. It holds nodes that are far
-// from the filled region, and makes a wall of a twentieth of a brick 0.004 % stiffer.
+constexpr double kLeastFill =
+    0.002;                         // least filled share of a brick; bricks with a smaller share are left out
+constexpr int kCells = 6;          // cells along each edge of a brick; see kThinFill
+constexpr double kThinFill = 0.1;  // a brick with a smaller filled share has 2 kCells cells along each edge
+constexpr int kSamples = 4;        // samples along each edge of a cell that the surface cuts
+// Stiffness of the empty region of a cut brick, as a share of the material's. This stiffness holds nodes that
+// are far from the filled region, and makes a wall of a twentieth of a brick 0.004 % stiffer.
 constexpr double kEmptyStiffness = 1e-8;
 // A box with few filled bricks is divided further, up to this number of bricks.
 constexpr std::size_t kMostLooked = 8;  // times most_bricks
@@ -39,8 +40,8 @@ std::array<int, 3> bricksFor(const Vec3& box_m, double most) {
   return bricksAlong(box_m, large_m);
 }
 
-/// A brick divided into cells. Samples at their corners and centres tell whether a cell is full, empty or
-/// cut.
+/// A brick divided into cells. Samples at the corners and centres of cells tell whether a cell is full, empty
+/// or cut.
 class BrickSampler {
  public:
   BrickSampler(const Vec3& low_P, const Vec3& size_m, int cells, const IsInside& isInside)
@@ -90,7 +91,7 @@ class BrickSampler {
   std::vector<bool> corners_;
 };
 
-/// The bricks that are filled or cut. Their nodes are not numbered yet.
+/// The bricks that are filled or cut. The nodes of the bricks are not numbered yet.
 std::vector<Brick> filledBricks(const Box& box_P, const std::array<int, 3>& count, const IsInside& isInside) {
   constexpr double kAll = 1 - 1e-9;
   std::vector<Brick> bricks;

@@ -80,10 +80,10 @@ bool areSettled(const VectorXd& values, const VectorXd& before, double most, dou
 }
 
 /// The lowest eigenvalues w^2 of K x = w^2 M x with their vectors, sorted: all up to `most`, or `wanted` of
-/// them, and some further ones that have not converged. Block Lanczos with inversion, and with a positive
-/// shift, since K of a free body is singular. The block has eight vectors, since symmetric bodies have
-/// several modes of one frequency, and a free body has six of frequency zero. Source: Golub and Van Loan,
-/// "Matrix Computations", 2013, section 10.3.6.
+/// them, and some further ones that have not converged. The method is block Lanczos with inversion, and with
+/// a positive shift, since K of a free body is singular. The block has eight vectors, since symmetric bodies
+/// have several modes of one frequency, and a free body has six of frequency zero. Source: Golub and Van
+/// Loan, "Matrix Computations", 2013, section 10.3.6.
 Eigenpairs lowest(const Sparse& K, const Sparse& M, double most, Eigen::Index wanted) {
   constexpr double kShift_hz = 300;
   constexpr Eigen::Index kBlock = 8;

@@ -25,7 +25,7 @@ namespace vps::viewer {
 namespace {
 
 constexpr int kMixerPriority = 1;  // the priority that askForShortPeriods() gives to OpenAL's own thread
-// Upper bound of a period; a longer one reported by a driver is taken as this.
+// Upper bound of a period; a longer period reported by a driver is replaced by this bound.
 constexpr double kSlowCard_s = 0.1;
 
 /// A source that plays a queue of short buffers. The OpenAL context must be current in all functions.
@@ -131,7 +131,8 @@ class OpenAlOutput final : public SoundOutput {
   OpenAlOutput& operator=(const OpenAlOutput&) = delete;
 
   void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) override {
-    alcMakeContextCurrent(context_);  // this sets the context of the whole process, which has only one
+    alcMakeContextCurrent(
+        context_);  // sets the context of the whole process, since a process has only one context
     if (to_L.allFinite()) parts_->place(to_L);
     parts_->write(parts);
     beeps_->write(beeps);
@@ -211,7 +212,8 @@ class LoopbackOutput final : public SoundOutput {
   LoopbackCard card_;  // destroyed before its device
 };
 
-/// Whether a sound card may exist. Without one, opening it makes the ALSA library print ten lines of errors.
+/// Whether a sound card may exist. Without a sound card, opening one makes the ALSA library print ten lines
+/// of errors.
 bool mayHaveSoundCard() {
 #ifdef __linux__
   for (const char* name : {"ALSOFT_CONF", "ALSOFT_DRIVERS", "PULSE_SERVER"})

@@ -31,7 +31,7 @@ struct LiveSound::Impl {
   std::condition_variable wake;
   std::vector<scenes::Snapshot> waiting;
   std::vector<device::Beep> beeps;
-  std::string news;  ///< next message; empty: none
+  std::string news;  ///< next message to the user; empty: no message
   Pose X_WL;         ///< listener's pose
   std::string told;  ///< last message
   bool is_ending = false;

@@ -32,13 +32,13 @@ class SoundOutput {
 /// Mean position of the snapshot's contacts, weighted by their forces; none without contact.
 VPS_VIEWER_API std::optional<Vec3> soundPlace(const scenes::Snapshot& shot);
 
-/// Opens the system's default output, for headphones (HRTF) if OpenAL supports it. If there is none, returns
-/// null and sets `why` to a line of text.
+/// Opens the system's default output, for headphones (HRTF) if OpenAL supports it. If there is no output,
+/// returns null and sets `why` to a line of text.
 VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why);
 
 /// Configures OpenAL in this process to open cards with short periods, unless the user's settings set
-/// periods. Call it before the first openSoundOutput() and before other threads start, since it sets an
-/// environment variable.
+/// periods. Call askForShortPeriods() before the first openSoundOutput() and before other threads start,
+/// since the call sets an environment variable.
 VPS_VIEWER_API void askForShortPeriods();
 /// Whether `name` is the value that askForShortPeriods() gives to ALSOFT_CONF.
 VPS_VIEWER_API bool isOwnSettings(const std::string& name);
@@ -94,7 +94,7 @@ class LastingOutput {
 
   /// As SoundOutput::write(); does nothing while there is no card. Never throws.
   void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L);
-  /// Whether the output is open. Tries to open it again, at most once every wait_s.
+  /// Whether the output is open. Tries to open a lost output again, at most once every wait_s.
   bool isOpen();
 
  private:

@@ -7,12 +7,13 @@
 namespace vps::viewer {
 namespace {
 
-// Reserve for a thread that is later than in the last seconds. It grows by kGrow_s with each gap, and shrinks
-// by half of its growth after kCalm_s without gaps.
+// Reserve for a thread that is later than in the last seconds. The reserve grows by kGrow_s with each gap,
+// and shrinks by half of its growth after kCalm_s without gaps.
 constexpr double kSpare_s = 1.25e-3, kGrow_s = 1.25e-3, kMostSpare_s = 10e-3, kCalm_s = 3;
 constexpr double kLongPause_s = 0.05;  // assumed: after a longer time the writer was paused, not late
-constexpr double kSettle_s = 1;  // gaps in this first time do not count, since their causes do not recur
-constexpr double kHalf_s = 1;    // half of the time window of Least
+constexpr double kSettle_s =
+    1;  // gaps during this time after the start do not count, since their causes do not recur
+constexpr double kHalf_s = 1;           // half of the time window of Least
 constexpr double kLongBlock_s = 10e-3;  // a longer block was written late
 // Least time to drop from quiet and from loud samples.
 constexpr double kWorthQuiet_s = 0.25e-3, kWorthLoud_s = 0.5e-3;
@@ -73,7 +74,7 @@ QueuePlan QueueLevel::plan(bool is_playing, std::size_t waiting, std::size_t cou
     lookBack(now_s);
   }
   const std::size_t spare = samples(spare_s_), period = samples(period_s_), block = block_.get();
-  // A block that is written late is longer by this time, so the limits are for the queue after the write.
+  // A block that is written late is longer by the delay, so the limits are for the queue after the write.
   const std::size_t usual = spare + period + block, most = usual + period + block;
   QueuePlan plan;
   if (!is_playing) plan.silence = usual - std::min(waiting + count, usual);

@@ -19,8 +19,8 @@ struct QueuePlan {
 
 /// Keeps the queue of waiting samples, which delays the sound, as short as the thread's lateness allows. The
 /// samples that still wait when the next ones are written show how much later the thread could have been. If
-/// more than needed were left over the last two seconds, some samples are dropped, preferably quiet ones. If
-/// the card ran out of samples, the queue starts again with more.
+/// more samples than needed were left over the last two seconds, some samples are dropped, preferably quiet
+/// ones. If the card ran out of samples, the queue starts again with more samples.
 class VPS_VIEWER_API QueueLevel {
  public:
   /// @param period_s  time of the samples that the card takes at once

@@ -19,11 +19,11 @@ constexpr double kHalfTurn = std::numbers::pi;
 // A smaller rise of the force within a step is no impact. assumed: the weight of a few grams
 constexpr double kLeastRise_N = 0.05;
 // Forces of resting contacts vary from step to step, so an impact's force must exceed all forces of this time
-// before. assumed
+// before the impact. assumed
 constexpr double kMemory_s = 0.01;
 constexpr double kRoughness_m = 0.1e-3;  // wavelength of the surface roughness. assumed: a milled surface
 constexpr double kRubShare = 0.1;        // share of the normal force that roughness modulates. assumed
-constexpr double kRollShare = 0.01;      // the same share for rolling contacts: 20 dB less. assumed
+constexpr double kRollShare = 0.01;      // share kRubShare for rolling contacts: 20 dB less. assumed
 
 /// The contacts of one step, combined to one force.
 struct TotalContact {

@@ -35,9 +35,9 @@ constexpr double kCurvature_m = 5e-3;
 
 using IsInside = std::function<bool(const Vec3& p_P)>;
 
-/// Inside test of a part, by the part's voxmap. If it has none, or only one of some regions, a map is built
-/// here: for the millions of tests, a solid takes ten times as long as a map and its construction. Only for
-/// walls that are thin compared to the map's voxels the solid is used.
+/// Inside test of a part, by the part's voxmap. If the part has no voxmap, or only a voxmap of some regions,
+/// a map is built here: for the millions of tests, a solid takes ten times as long as a map and its
+/// construction. Only for walls that are thin compared to the map's voxels the solid is used.
 IsInside insideOf(const scenes::ScenePart& part, double volume_m3) {
   // About as fine as the samples of bricks, with ten bricks across a part.
   constexpr double kVoxelsAcross = 250;

@@ -28,7 +28,7 @@ class VPS_VIEWER_API PartVoice {
   [[nodiscard]] double mass_kg() const { return mass_kg_; }
   [[nodiscard]] Touch touch(const Vec3& p_P, const Vec3& n_P) const;
 
-  /// Adds a force that acts during the current sample. Call it before next().
+  /// Adds a force that acts during the current sample. Call push() before next().
   void push(const Touch& touch, double force_N);
   /// The current sample: pressure at the listener [Pa]. Advances to the next sample.
   double next();
@@ -51,8 +51,8 @@ class VPS_VIEWER_API PartVoice {
   long quiet_samples_ = 0, quiet_after_ = 0;
 };
 
-/// The voice of a part of a scene. Computes its modes, which takes up to a second, unless settings.has_rings
-/// is false.
+/// The voice of a part of a scene. Computes the part's modes, which takes up to a second, unless
+/// settings.has_rings is false.
 PartVoice partVoice(const scenes::ScenePart& part, const SoundSettings& settings);
 
 /// Contact modulus of two bodies of the same material: E / (2 (1 - nu^2)).

@@ -32,7 +32,7 @@ using Response = http::response<http::string_body>;
 constexpr std::chrono::seconds kRequestLimit{20};  // longest time for one request and its response
 constexpr std::chrono::seconds kSilenceLimit{30};  // longest silence of a WebSocket; pings end the silence
 constexpr std::size_t kLongestHeader = 8192;
-// A browser that does not read is disconnected when this much waits to be sent.
+// A browser that does not read is disconnected when this many messages or bytes wait to be sent.
 constexpr std::size_t kMostWaiting = 512, kMostWaitingBytes = 4U << 20U;
 // Size of the system's send buffer, small so that a slow browser gets recent snapshots.
 constexpr int kSendBuffer = 64 * 1024;
@@ -102,7 +102,7 @@ class WebSocketEnd final : public BrowserEnd, public std::enable_shared_from_thi
                           if (!self->waiting_.empty()) self->write();
                         });
   }
-  /// Cancels all operations. The last of them to end deletes this object.
+  /// Cancels all operations. The last operation to end deletes this object.
   void close() {
     if (std::exchange(is_closing_, true)) return;
     beast::get_lowest_layer(socket_).cancel();

@@ -12,7 +12,7 @@
 
 namespace vps::viewer {
 
-/// Data that all connections share. It outlives the connections.
+/// Data that all connections share. The data outlive the connections.
 struct WebShared {
   WebHub& hub;
   const WebPage& page;

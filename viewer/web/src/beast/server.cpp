@@ -103,7 +103,7 @@ std::unique_ptr<ssl::context> tlsContext(const std::string& certificate_file, co
   auto context = std::make_unique<ssl::context>(ssl::context::tls_server);
   SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
   ErrorCode failed;
-  // Without this OpenSSL asks the terminal for the passphrase.
+  // Without this callback OpenSSL asks for the passphrase on the terminal.
   context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); },
                                  failed);
   context->use_certificate_chain_file(certificate_file, failed);

@@ -262,7 +262,8 @@ bool WebHub::hear(int number, std::string_view text, double now_s) {
 void WebHub::obey(int number, Browser& browser, const BrowserMessage& message) {
   switch (message.word) {
     case BrowserWord::Ack:
-      // A number that was not sent yet is ignored, since the browser would be sent more than it draws.
+      // A number that was not sent yet is ignored, since otherwise the browser would get more snapshots than
+      // it draws.
       if (message.number > browser.drawn && message.number <= browser.coder.number())
         browser.drawn = static_cast<std::uint32_t>(message.number);
       return;

@@ -30,7 +30,8 @@ class BrowserEnd {
 };
 
 /// Greatest number of snapshots that a browser has received but not drawn; a slow or distant browser thus
-/// gets fewer. At 60 a second, three snapshots wait in the browser until they are due (run/presentation.h).
+/// gets fewer. At 60 snapshots a second, three of them wait in the browser until they are due
+/// (run/presentation.h).
 inline constexpr std::uint32_t kMostUnseen = 8;
 
 /// Connects the run with all browsers. Used by one thread.
@@ -41,10 +42,11 @@ class WebHub {
   /// Adds a browser and returns its number.
   int join(BrowserEnd& end);
   void leave(int browser);
-  /// Handles a message of a browser. Returns false if the browser sends too many or invalid messages; then
-  /// close it.
+  /// Handles a message of a browser. Returns false if the browser sends too many or invalid messages; close
+  /// the browser's connection then.
   bool hear(int browser, std::string_view text, double now_s);
-  /// Reads the run's news and sends them to the browsers. Call it about as often as snapshots may be sent.
+  /// Reads the run's news and sends them to the browsers. Call poll() about as often as snapshots may be
+  /// sent.
   void poll(double now_s);
 
   /// The file of a part, requested as /part/RUN/PART/LEVEL.glb; null: there is none.
@@ -95,7 +97,7 @@ class WebHub {
   std::unique_ptr<BlowSounds> sounds_;  ///< null: no browser plays sound
   std::uint64_t shots_ = 0;
   std::map<std::size_t, ShadingMesh> meshes_;
-  /// By part and level, fine or coarse.
+  /// Files of the parts, by part and level, fine or coarse.
   std::map<std::pair<std::size_t, bool>, std::shared_ptr<const std::string>> files_;
 };
 

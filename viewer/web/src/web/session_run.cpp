@@ -106,7 +106,7 @@ class SessionRun final : public WatchedRun {
   }
 
  private:
-  /// Looks for the session on another thread, since this may take a second.
+  /// Looks for the session on another thread, since the search may take a second.
   void look() {
     if (!joining_.valid()) {
       joining_ = std::async(std::launch::async, [session = options_.session, network = options_.network] {
@@ -133,7 +133,8 @@ class SessionRun final : public WatchedRun {
   void findPointers() {
     try {
       pointers_.emplace(options_.session, options_.network);
-    } catch (const LoadError& refused) {  // certificates made before pointers existed
+    } catch (
+        const LoadError& refused) {  // certificates that were made before pointers existed do not allow them
       news_.push_back(
           {0, std::string("the pointers of other people cannot be shown: ") + refused.what(), {}});
     }

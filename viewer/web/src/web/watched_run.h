@@ -41,7 +41,7 @@ class WatchedRun {
  public:
   virtual ~WatchedRun() = default;
 
-  /// Reads the run's news. Call it before the functions below.
+  /// Reads the run's news. Call poll() before the functions below.
   virtual void poll() = 0;
   /// The scene; null: there is none yet. The pointer stays valid until number() changes.
   [[nodiscard]] virtual const scenes::Scene* scene() const = 0;
@@ -73,7 +73,7 @@ class WatchedRun {
 std::unique_ptr<WatchedRun> watchedSession(const WebOptions& options);
 /// Runs the scene's procedure in this process, repeatedly unless a person moves the part.
 std::unique_ptr<WatchedRun> watchedScene(const scenes::Scene& scene, const WebOptions& options);
-/// Plays a recording from its beginning. Throws LoadError if it has no recorded step.
+/// Plays a recording from its beginning. Throws LoadError if the recording has no recorded step.
 std::unique_ptr<WatchedRun> watchedRecording(const device::RecordedRun& run);
 
 }  // namespace vps::viewer

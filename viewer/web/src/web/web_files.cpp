@@ -71,8 +71,8 @@ class GlbBuffer {
   Json views_ = Json::array(), accessors_ = Json::array();
 };
 
-/// The primitive of the surface. It has only the vertices that its triangles use, in the order of their first
-/// use.
+/// The primitive of the surface. The primitive has only the vertices that its triangles use, in the order of
+/// their first use.
 Json surface(const ShadingMesh& mesh, std::size_t wanted, GlbBuffer& buffer) {
   std::vector<std::uint32_t> triangles = CoarseMesh(mesh).indices(wanted);
   std::vector<std::uint32_t> number(mesh.vertices.size(), UINT32_MAX);

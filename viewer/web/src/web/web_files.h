@@ -20,7 +20,7 @@ struct WebFile {
 /// The page's files.
 class WebPage {
  public:
-  /// Reads three.js. If it is not installed, missing() tells so.
+  /// Reads three.js. If three.js is not installed, missing() returns a message.
   WebPage();
   /// Finds a file by the path of a request, such as "/page.js"; null: there is none.
   [[nodiscard]] const WebFile* find(std::string_view path) const;
@@ -36,9 +36,9 @@ extern const char* const kPageHtml;
 extern const char* const kPageCss;
 extern const char* const kPageScript;
 
-/// The bytes of a .glb file, in metres and in the part's frame. It has one node with the surface (positions,
-/// normals, triangles) and the sharp edges as lines. The node's translation is the centre of the mesh, so
-/// that floats stay precise far from the origin.
+/// The bytes of a .glb file, in metres and in the part's frame. The file has one node with the surface
+/// (positions, normals, triangles) and the sharp edges as lines. The node's translation is the centre of the
+/// mesh, so that floats stay precise far from the origin.
 /// @param wanted     approximate number of triangles; a surface with fewer triangles is not simplified
 /// @param has_edges  false: without edges, which do not lie on a coarse surface
 /// O(triangles). Source: Khronos, "glTF 2.0 Specification".

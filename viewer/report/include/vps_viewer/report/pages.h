@@ -42,7 +42,7 @@ VPS_VIEWER_API std::string missingForPdf();
 /// Prints an HTML file as PDF. Returns an empty text on success, otherwise the reason. Printing takes a few
 /// seconds.
 VPS_VIEWER_API std::string printPdf(const std::string& page, const std::string& pdf);
-/// Prints the text of a page that shows nothing from other files. Returns as printPdf().
+/// Prints the text of a page that shows nothing from other files. The result is as for printPdf().
 VPS_VIEWER_API std::string printPdfOf(const std::string& html, const std::string& pdf);
 
 }  // namespace vps::viewer

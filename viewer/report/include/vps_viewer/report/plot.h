@@ -26,7 +26,8 @@ struct Plot {
   bool is_log_x = false, is_log_y = false;
 };
 
-/// Whether a plot was written. Functions here do not throw, so that a missing gnuplot never ends a run.
+/// Whether a plot was written. The functions that plot do not throw, so that a missing gnuplot never ends a
+/// run.
 struct PlotOutcome {
   bool is_written = false;
   std::string failure_reason;  ///< the reason for the user: "gnuplot is not installed (Debian: apt install

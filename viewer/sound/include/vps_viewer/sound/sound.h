@@ -34,7 +34,7 @@ class VPS_VIEWER_API RunSound {
 
   /// Computes the modes of a part before its first impact.
   void prepare(std::size_t part);
-  /// Adds the samples up to the snapshot's time. Call it with the snapshot of each physics step.
+  /// Adds the samples up to the snapshot's time. Call hear() with the snapshot of each physics step.
   void hear(const scenes::Snapshot& shot);
   /// Adds a beep that begins at the current time.
   void beep(device::Beep beep);

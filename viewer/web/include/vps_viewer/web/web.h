@@ -20,7 +20,8 @@ struct WebOptions {
   /// Address of this machine to listen at. Any address other than loopback needs a token.
   std::string address = "127.0.0.1";
   std::string token;  ///< secret of the page's address; empty: none on loopback, else a new one
-  /// PEM files of a certificate and its key; the page is then served by https only. Empty: by http.
+  /// PEM files of a certificate and its key; the page is then served by https only. Empty: the page is served
+  /// by http.
   std::string tls_certificate, tls_key;
   bool allows_hand = false;        ///< a browser may take the part in hand
   double rate_hz = 60;             ///< greatest number of snapshots per second for each browser
