@@ -29,9 +29,8 @@ VPS_VIEWER_API std::string verdictLine(const scenes::AssembleResult& result);
 /// The definition of the overlap in the tables.
 inline constexpr const char* kOverlapMeaning =
     "overlap: greatest depth of a point of one part's surface below the other part's surface, or, if "
-    "greater, "
-    "thickness of the shared volume (diameter of the greatest ball in that volume); an overlap of up to "
-    "0.5 um beyond its error counts as contact";
+    "greater, thickness of the shared volume (diameter of the greatest ball in that volume); an overlap "
+    "of up to 0.5 um beyond its error counts as contact";
 static_assert(scenes::kContactDepth_m == 0.5e-6);
 
 /// The volume that two parts share, in cubic millimetres: "7.9840"; "<= 12.3" if the error is as large as the
