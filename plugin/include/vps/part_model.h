@@ -36,7 +36,7 @@ struct PartModel {
   std::string name;
   std::shared_ptr<const Mesh> mesh;
   Material material;
-  std::shared_ptr<const VoxMap> map;  ///< null for a sheet, which has no inside
+  std::shared_ptr<const VoxMap> map;  ///< null for a sheet, because a sheet has no inside
   std::shared_ptr<const PointShell> shell;
   std::shared_ptr<const Solid> solid;  ///< what map and shell are built from
 };

@@ -20,13 +20,13 @@ struct PointShellSettings {
   double edge_angle_rad = 0.35;  ///< edges sharper than this (about 20 degrees) get points of their own
 };
 
-/// A node of the sphere hierarchy over points [first, first + count). Nodes are in depth-first order; the
-/// walk goes on at `skip` when it does not descend into a node.
+/// A node of the sphere hierarchy over points [first, first + count). Nodes are in depth-first order; a
+/// search continues at `skip` when it does not descend into a node.
 struct ShellNode {
   Vec3 center = Vec3::Zero();
   double radius_m = 0;
   std::uint32_t first = 0, count = 0;
-  std::uint32_t skip = 0;  ///< index of the next node when this one is culled
+  std::uint32_t skip = 0;  ///< index of the next node when this node is culled
   bool is_leaf = false;
 };
 
@@ -42,7 +42,7 @@ struct VPS_API PointShell {
   /// The hierarchy that queries use: leaves of sixteen points, then blocks of sixteen spheres around them,
   /// and so on; the root last.
   std::vector<ShellBlock> blocks;
-  std::size_t leaf_blocks = 0;  ///< how many of the blocks hold points; they come first
+  std::size_t leaf_blocks = 0;  ///< number of blocks that hold points; these blocks come first
   double spacing_m = 0;
   [[nodiscard]] std::size_t size() const noexcept { return points.size(); }
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
@@ -52,16 +52,18 @@ struct VPS_API PointShell {
 /// noise). Every surface point has a shell point within spacing_m that faces the same way; face points are at
 /// least 0.75 spacing_m apart, except on bumps: no vertex protrudes by more than a hundredth of spacing_m
 /// beyond its nearest point. The protrusion is measured along the mean of both normals, so that even
-/// curvature counts as none; if the normals are more than 20 degrees apart, along the vertex's own. Face
-/// points have the triangle's normal, because interpolated normals would describe another surface than the
-/// mesh's exact distance; points on edges and corners have the angle-weighted pseudonormal. Deterministic.
-/// O(area / spacing^2). Throws LoadError for unusable meshes, for a spacing that is not positive, and for a
-/// spacing that would give more points than fit in memory; the message names a spacing that would fit.
+/// curvature counts as none; if the normals are more than 20 degrees apart, along the vertex's own normal.
+/// Face points have the triangle's normal, because interpolated normals would describe another surface than
+/// the mesh's exact distance; points on edges and corners have the angle-weighted pseudonormal.
+/// Deterministic. O(area / spacing^2). Throws LoadError for unusable meshes, for a spacing that is not
+/// positive, and for a spacing that would give more points than fit in memory; the message names a spacing
+/// that would fit.
 VPS_API PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 
-/// As above, for a solid's repaired surface: the normals point into the solid. A sheet has each point twice,
-/// once for each side with the whole area, and points on its border whose normals point into the sheet.
+/// buildPointShell() for a solid's repaired surface: the normals point into the solid. A sheet has each point
+/// twice, once for each side with the whole area, and points on its border whose normals point into the
+/// sheet.
 VPS_API PointShell buildPointShell(const Solid& solid, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 
@@ -80,8 +82,8 @@ VPS_API PointShell croppedShell(const PointShell& shell, const std::vector<Box>&
 /// Writes PLY with the properties x y z, nx ny nz (inward) and area, as binary little-endian doubles, so that
 /// the shell is read back to the bit. An existing file is replaced whole or not at all. Throws LoadError.
 VPS_API void savePly(const PointShell& shell, const std::string& file);
-/// Reads PLY with these properties, in any order and of any number type, binary little-endian or ascii.
-/// Throws LoadError.
+/// Reads a PLY file with the properties that savePly() writes, in any order and of any number type, binary
+/// little-endian or ascii. Throws LoadError.
 VPS_API PointShell loadPly(const std::string& file);
 
 }  // namespace vps

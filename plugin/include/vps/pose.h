@@ -47,8 +47,8 @@ VPS_API Vec3 rotationVector(const Mat3& R);
 /// The rotation that the rotation vector r [rad] describes.
 VPS_API Mat3 rotationFromVector(const Vec3& r);
 
-/// The pose after `share` (0 to 1) of a motion from one pose to the other: the origin on the line between the
-/// two, the rotation about the axis that takes one into the other. O(1).
+/// The pose after `share` (0 to 1) of a motion from one pose to the other: the origin moves on the line
+/// between both origins, the rotation is about the axis of the rotation between both poses. O(1).
 [[nodiscard]] VPS_API Pose interpolate(const Pose& from, const Pose& to, double share);
 
 /// Spatial velocity of a frame: angular w [rad/s] and linear v [m/s] of its origin, both in one stated frame.

@@ -58,23 +58,23 @@ struct QueryResult {
 /// out. min_distance_m is exact when there is a contact; otherwise it may be a bound (is_beyond_band), since
 /// culled points are not read: use queryDistance() for the distance. When `out` is full the first ids are
 /// kept. With a memory, leaves that cannot have come near since the last pose are skipped, and min_distance_m
-/// is at most the cutoff. BadPose (no contacts) if X_MP is not finite. Never throws, allocates or locks.
-/// Source: McNeely et al. 1999; Tripicchio et al., section 4.1.
+/// is at most the cutoff. Returns BadPose (no contacts) if X_MP is not finite. Never throws, allocates or
+/// locks. Source: McNeely et al. 1999; Tripicchio et al., section 4.1.
 VPS_API QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
                                   const QueryOptions& options, ContactSet& out,
                                   QueryMemory* memory = nullptr) noexcept;
 
 /// Finds the least signed distance of the shell to the map, by branch and bound over the spheres. Within the
-/// band it is exact: the field's least reading; -band_m() stands for that depth or more. Beyond the band the
-/// status is BeyondBand and min_distance_m a lower bound of the true distance, infinite for an empty shell.
-/// Never throws, allocates or locks.
+/// band the distance is exact: the field's least reading; -band_m() stands for a depth of band_m() or more.
+/// Beyond the band the status is BeyondBand and min_distance_m a lower bound of the true distance, infinite
+/// for an empty shell. Never throws, allocates or locks.
 VPS_API QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
                                   Simd simd = Simd::Best) noexcept;
 
 /// Sums over all touching points.
 struct TouchSummary {
   std::size_t count = 0;   ///< touching points: distance below 0
-  double area_m2 = 0;      ///< surface area that they represent
+  double area_m2 = 0;      ///< surface area that the touching points represent
   double volume_m3 = 0;    ///< sum of area times depth: about the volume of the overlap
   double max_depth_m = 0;  ///< 0 when nothing touches
   Wrench F_O_M;            ///< penalty wrench on the shell's part about O, in M [N m, N]
@@ -112,7 +112,7 @@ struct PairMemory {
 /// alone. Counts are added; area and volume are the means of both directions; max_depth_m and min_distance_m
 /// are over both. Sharp fits need both directions, since one part's edge points find overlaps that the other
 /// field's rounded edges miss. Action equals reaction: with A and B exchanged and X_AB inverted the wrench is
-/// the opposite, up to rounding. Never throws, allocates or locks. BadPose as queryWrench().
+/// the opposite, up to rounding. Never throws, allocates or locks. Returns BadPose as queryWrench() does.
 /// @param X_AB  pose of B in A
 /// @param p_AO  the point the wrench is about, in A
 VPS_API QueryResult queryBothSides(const PairSide& a, const PairSide& b, const Pose& X_AB,

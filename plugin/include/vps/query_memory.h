@@ -12,14 +12,14 @@
 
 namespace vps {
 
-/// Temporal coherence of one map and one shell. Reading a leaf of points, or bounding it or sixteen
-/// neighbouring leaves, tells how far they may move before any of their points can come within the cutoff.
-/// Every group of leaves has an odometer: the sum over poses of the largest displacement of any of its
-/// points. A leaf is skipped until the odometer has passed that distance. Proof: the interpolated field I
-/// fulfils |I(p') - I(p)| <= s |p' - p| with s the steepest slope of its nodes times sqrt 3; the distance
-/// between two poses is at most the sum of the distances between the poses in between (triangle inequality);
-/// and rounding always increases the odometer. No touching point is missed: the answer equals the
-/// exhaustive one for every motion, jumps included.
+/// Temporal coherence of one map and one shell. Reading a leaf of points, or bounding the leaf or sixteen
+/// neighbouring leaves, tells how far these leaves may move before any of their points can come within the
+/// cutoff. Every group of leaves has an odometer: the sum over poses of the largest displacement of any of
+/// its points. A leaf is skipped until the odometer has passed the distance that the leaf may move. Proof:
+/// the interpolated field I fulfils |I(p') - I(p)| <= s |p' - p| with s the steepest slope of its nodes times
+/// sqrt 3; the distance between two poses is at most the sum of the distances between the poses in between
+/// (triangle inequality); and rounding always increases the odometer. No touching point is missed: the answer
+/// equals the exhaustive one for every motion, jumps included.
 ///
 /// One memory serves one pair and one thread at a time. Queries may have different cutoffs; a cutoff larger
 /// than the last query's counts as a motion by the difference. A query of another map or shell ignores the

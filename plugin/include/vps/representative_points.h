@@ -34,7 +34,7 @@ class VPS_API RepresentativePoints {
     QueryOptions options;  ///< as for queryContacts()
     Twist step_M;  ///< displacement of the shell's part against the map in the step, about M's origin, in M
                    ///< [rad, m]
-    std::span<const std::uint32_t> required;  ///< ids, ascending, that are always reported if they are near
+    std::span<const std::uint32_t> required;  ///< ids, ascending, of points that are always reported if near
     /// If there are at most this many near points (counted in leaves of sixteen), all are reported, as by
     /// queryContacts().
     std::size_t full_count = 0;
@@ -63,7 +63,7 @@ class VPS_API RepresentativePoints {
   /// As queryContacts(), with fewer points; the reported contacts have the same bits. For each point left
   /// out, a reported point of the same group is as near now, to 1/16384 voxel, and a reported point is as
   /// near after the step (to first order), or less than kSame_m farther. If groups were merged, the reported
-  /// point is of the same cell instead. Never throws, allocates or locks.
+  /// point is of the same cell and not always of the same group. Never throws, allocates or locks.
   QueryResult find(const VoxMap& map, const Pose& X_MP, const Request& request, ContactSet& out,
                    QueryMemory* memory = nullptr) noexcept;
 
@@ -80,8 +80,8 @@ class VPS_API RepresentativePoints {
   /// Size of the cells in which the last find() merged groups; 0 if it merged none.
   [[nodiscard]] double mergedTo_m() const noexcept { return merged_to_m_; }
 
-  /// Gaps that differ by less are treated as equal [m]. Assumed: far below any gap that matters, above
-  /// rounding.
+  /// Gaps that differ by less than this are treated as equal [m]. Assumed: far below any gap that matters,
+  /// above rounding.
   static constexpr double kSame_m = 0.1e-6;
 
  private:
@@ -166,7 +166,7 @@ class VPS_API RepresentativePoints {
   std::vector<Area> areas_;
   std::vector<Surface> surfaces_;
   std::vector<Nearest> of_groups_, of_cells_;
-  std::vector<std::uint32_t> place_of_cell_;  ///< in of_cells_
+  std::vector<std::uint32_t> place_of_cell_;  ///< index in of_cells_
   double merged_to_m_ = 0;
   bool reduces_contacts_ = false;
 };

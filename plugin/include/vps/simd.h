@@ -9,12 +9,12 @@
 
 namespace vps {
 
-/// `Best` is the faster of the two widest sets that the processor has, by a measurement of 0.1 ms when the
-/// program starts. The other values are for tests and measurements; if the processor lacks a set, the next
-/// narrower one is used.
+/// `Best` is the faster of the two widest instruction sets that the processor has, by a measurement of 0.1 ms
+/// when the program starts. The other values are for tests and measurements; if the processor lacks a set,
+/// the next narrower set is used.
 enum class Simd { Best, Scalar, Avx2, Avx512 };
 
-/// The set that `wanted` selects on this processor; never `Best`.
+/// The instruction set that `wanted` selects on this processor; never `Best`.
 VPS_API Simd availableSimd(Simd wanted = Simd::Best) noexcept;
 VPS_API const char* toText(Simd simd) noexcept;
 
@@ -22,7 +22,7 @@ VPS_API const char* toText(Simd simd) noexcept;
 inline constexpr int kLanes = 16;
 
 /// Positions are floats relative to the block's centre, so that their relative error of 1e-7 refers to some
-/// millimetres, wherever the block lies. Only plain members, because sources that are compiled for several
+/// millimetres, wherever the block lies. The members are plain, because sources that are compiled for several
 /// processors include this header.
 struct alignas(64) ShellBlock {
   double center[3] = {0, 0, 0};  ///< of a sphere that holds all lanes' points or spheres, in P [m]

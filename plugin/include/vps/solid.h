@@ -33,10 +33,10 @@ class VPS_API Solid {
   /// without faults keeps its facets in their order. O(n log n); with faults about six winding numbers for
   /// each facet. Throws LoadError as requireUsable(), naming the part.
   explicit Solid(const Mesh& mesh, const std::string& part = "");
-  /// A surface without an inside, not repaired: every point is outside, and normals are the facets' own. For
-  /// surfaces that other parts touch from either side. Accepts an empty mesh.
+  /// A surface without an inside, not repaired: every point is outside, and normals are the facets' own. Use
+  /// a sheet for surfaces that other parts touch from either side. Accepts an empty mesh.
   static Solid sheet(const Mesh& mesh);
-  /// The same solid, scaled by a factor. Costs as much as building it.
+  /// The same solid, scaled by a factor. Costs as much as building a solid.
   [[nodiscard]] Solid scaled(double factor) const;
   Solid(Solid&&) noexcept;
   Solid& operator=(Solid&&) noexcept;
@@ -49,7 +49,7 @@ class VPS_API Solid {
   /// Negative inside; +max_m if no surface is nearer than that, on either side.
   [[nodiscard]] double signedDistance(const Vec3& p, double max_m = 1e300) const noexcept;
   [[nodiscard]] bool isInside(const Vec3& p) const noexcept;
-  /// True if it was made by sheet().
+  /// True if the solid was made by sheet().
   [[nodiscard]] bool isSheet() const noexcept { return is_sheet_; }
 
   /// The places where segment ab crosses the surface; see MeshDistance.
@@ -75,7 +75,7 @@ class VPS_API Solid {
   /// Volume, centre and inertia of the solid: of the repaired mesh, as by massOf() in mesh_repair.h. All zero
   /// for a sheet.
   [[nodiscard]] const MassProperties& mass() const noexcept { return mass_; }
-  /// True if pseudonormals do not decide everywhere.
+  /// True if winding numbers, and not pseudonormals alone, decide which points are inside.
   [[nodiscard]] bool isByWinding() const noexcept { return interior_ != nullptr; }
 
   /// For the library's own use; null if pseudonormals decide everywhere.

@@ -15,10 +15,10 @@ class VPS_API SpinClearance {
  public:
   /// Returns true if the surfaces of the parts are known to stay farther apart than least_m >= 0 between two
   /// poses of part 1 in part 0, while the axis about which they turn moves on a straight line. Returns false
-  /// if that is not known. A part that lies wholly inside the other's material is apart in this sense.
-  /// Cost: about 100 ns. The fourth call in which the parts turn by 20 mrad or more about an axis that is not
-  /// known makes a search of O(n log n) in their facets. The next search is made 64 such calls after one that
-  /// helped, otherwise after twice as many calls as the last time. Allocates in searches.
+  /// if the distance is not known. A part that lies wholly inside the other's material is apart in this
+  /// sense. Cost: about 100 ns. The fourth call in which the parts turn by 20 mrad or more about an axis that
+  /// is not known makes a search of O(n log n) in their facets. The next search is made 64 such calls after a
+  /// search that helped, otherwise after twice as many calls as the last time. Allocates in searches.
   /// @param part0, part1  the same parts in each call, until reset()
   bool staysApart(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
                   double least_m);

@@ -28,9 +28,10 @@ class Solid;
 struct VoxLayout;  // cells and bricks
 
 /// Signed distance [m] to a part's surface in frame M, negative inside. At the grid's nodes within the band
-/// it is exact to half a quantum_m() (nodes have 16 bits); between nodes it is trilinear. Beyond the band it
-/// saturates at +-band_m() with the right sign, and lowerBound() gives a coarse lower bound of the distance.
-/// A map is immutable, and copies share its data. Reading is thread-safe and never allocates or throws.
+/// it is exact to half a quantum_m() (nodes have 16 bits); between nodes it is trilinear. Beyond the band the
+/// distance saturates at +-band_m() with the right sign, and lowerBound() gives a coarse lower bound of the
+/// distance. A map is immutable, and copies share its data. Reading is thread-safe and never allocates or
+/// throws.
 class VPS_API VoxMap {
  public:
   static constexpr int kBrick = 8;  ///< grid cells per brick edge
@@ -70,9 +71,9 @@ class VPS_API VoxMap {
   /// A lower bound of the true unsigned distance to the surface, from the grid of cells; outside the grid it
   /// grows with the distance to the part's box. Not negative. Used to skip whole clusters of points.
   [[nodiscard]] double lowerBound(const Vec3& p_M) const noexcept;
-  /// A lower bound of the signed distance at p_M; -band_m() where nothing better is known. It bounds a sphere
-  /// of points: every distance(q) with |q - p_M| <= r is at least min(leastDistance(p_M) - r, band_m()) -
-  /// sampleError_m().
+  /// A lower bound of the signed distance at p_M; -band_m() where nothing better is known. The bound also
+  /// serves a sphere of points: every distance(q) with |q - p_M| <= r is at least min(leastDistance(p_M) - r,
+  /// band_m()) - sampleError_m().
   [[nodiscard]] double leastDistance(const Vec3& p_M) const noexcept;
   /// A bound of the difference between distance() and the saturated true distance: sqrt(3)/2 voxel and half a
   /// quantum, reached at the middle of a cell where surfaces meet in a corner. (On smooth surfaces the
@@ -106,7 +107,7 @@ struct PlacedSolid {
   Pose X_MP;
 };
 
-/// As above, for a solid that exists already: uses its surface and its signs. O(surface area / h^2).
+/// buildVoxMap() for a solid that exists already: uses its surface and its signs. O(surface area / h^2).
 VPS_API VoxMap buildVoxMap(const Solid& solid, const VoxMapSettings& settings, const std::string& part = "",
                            const Progress& progress = {}, MeshReport* report = nullptr);
 VPS_API VoxMap buildVoxMap(const PlacedSolid& solid, const VoxMapSettings& settings,
@@ -129,7 +130,7 @@ VPS_API VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSett
 VPS_API VoxMap cookVoxMap(const std::vector<PlacedSolid>& parts, const VoxMapSettings& settings,
                           const Progress& progress = {});
 
-/// Adds a part to a cooked map and returns the new map; the old one is unchanged. The cost is proportional to
+/// Adds a part to a cooked map and returns the new map; the old map is unchanged. The cost is proportional to
 /// the new part's surface.
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedSolid& part);
@@ -141,8 +142,9 @@ struct PlacedMap {
 };
 
 /// Resamples a placed map onto the grid of `settings`: every node is read from the map's own field. The
-/// errors of both fields add up; sampleError_m() bounds them. Much faster than building the map at that pose.
-/// Throws LoadError if the map's band is narrower than the requested one, or as buildVoxMap().
+/// errors of both fields add up; sampleError_m() bounds them. Resampling is much faster than building the map
+/// at the new pose. Throws LoadError if the map's band is narrower than the requested one, or as
+/// buildVoxMap().
 VPS_API VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings);
 
 /// As mountVoxMap() for a mesh, but resamples the part's own map: milliseconds instead of a tenth of a second
@@ -151,19 +153,19 @@ VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
 
 /// Estimates the bytes that building a mesh's map takes: the bricks that meet a slab of the surface's area,
 /// as thick as the band, and the directory of its box. buildVoxMap() uses this estimate to refuse maps that
-/// would not fit. It holds for surfaces of many bricks; a part smaller than a brick may take somewhat more.
-/// O(triangles).
+/// would not fit. The estimate holds for surfaces of many bricks; a part smaller than a brick may take
+/// somewhat more. O(triangles).
 VPS_API double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings);
-/// The limit of this estimate above which buildVoxMap() refuses to build a map.
+/// The limit of expectedMapBytes() above which buildVoxMap() refuses to build a map.
 VPS_API double largestMapBytes();
 /// The smallest voxel size, not below the settings' own, at which the estimate is at most `most_bytes`; to
 /// 0.1 %. Infinite if no voxel size is large enough. O(triangles).
 VPS_API double fittingVoxel_m(const Mesh& mesh, const VoxMapSettings& settings, double most_bytes);
 
 /// A copy of the map that keeps only the nodes in and around the boxes; readings there are the same to the
-/// bit. Elsewhere it reads as saturated, with the right sign for each cell, and its bounds do not hold: use
-/// it only for queries whose points, and the centres of their clusters, stay in one of the boxes. More parts
-/// can be mounted on it. O(cells).
+/// bit. Elsewhere the copy reads as saturated, with the right sign for each cell, and its bounds do not hold:
+/// use it only for queries whose points, and the centres of their clusters, stay in one of the boxes. More
+/// parts can be mounted on the copy. O(cells).
 VPS_API VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M);
 
 }  // namespace vps

@@ -42,7 +42,7 @@ class VPS_API VoxMapCache {
   VoxMap build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
                const Progress& progress = {}, MeshReport* report = nullptr) const;
 
-  /// As above, where the mesh's Solid exists already.
+  /// build() for callers that already have the mesh's Solid.
   VoxMap build(const Mesh& mesh, const Solid& solid, const VoxMapSettings& settings,
                const std::string& part = "", const Progress& progress = {},
                MeshReport* report = nullptr) const;

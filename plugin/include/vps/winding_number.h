@@ -20,8 +20,8 @@ namespace vps {
 ///
 /// Distant clusters of triangles are replaced by their first three moments, where the rest of the series is
 /// provably at most `cluster_error`. Sources: Jacobson et al., Robust inside-outside segmentation using
-/// generalized winding numbers, 2013; Barill et al., Fast winding numbers for soups and clouds, 2018 (there
-/// "far" is a ratio, here an error).
+/// generalized winding numbers, 2013; Barill et al., Fast winding numbers for soups and clouds, 2018 (in both
+/// papers "far" is a ratio of lengths, here a bound of the error).
 class VPS_API WindingNumber {
  public:
   /// A value and a bound of its error (clusters used times cluster_error; 100 times the error in tests).
@@ -32,7 +32,7 @@ class VPS_API WindingNumber {
 
   /// Copies the data that it needs. O(n log n). Triangles without area do not contribute.
   explicit WindingNumber(const Mesh& mesh, double cluster_error = 1e-2);
-  /// As above, for some of a mesh's triangles.
+  /// The winding number of some of a mesh's triangles.
   WindingNumber(const Mesh& mesh, std::span<const std::uint32_t> triangles, double cluster_error = 1e-2);
 
   /// O(log n) typical. Thread-safe; never throws or allocates. Every thread gets the same bits.

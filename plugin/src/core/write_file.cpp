@@ -16,7 +16,7 @@ namespace {
 std::filesystem::path temporaryName(const std::filesystem::path& target) {
   static std::atomic<unsigned> count = 0;
   std::filesystem::path name = target;
-  // append(): GCC 12 warns of an overflow in "text" + std::string that does not exist.
+  // append() is used because GCC 12 warns of an overflow in "text" + std::string, which does not exist.
   name += std::string(".").append(std::to_string(getpid())).append(".");
   name += std::to_string(count++).append(".unfinished");
   return name;

@@ -109,7 +109,7 @@ void MeshDistance::computeNormals() {
 namespace {
 
 /// Visits the triangles in the near boxes of a tree, in no particular order, until visit(triangle) returns
-/// false. Returns true if it never did.
+/// false. Returns true if visit() never returned false.
 /// @param isNear  returns for each box of a node whether it is near
 template <typename Nodes, typename IsNear, typename Visit>
 bool descend(const Nodes& nodes, std::uint32_t triangle_bit, IsNear isNear, Visit visit) {
@@ -171,15 +171,16 @@ bool MeshDistance::overlapping(const Box& box, std::size_t most,
       });
 }
 
-/// Visits triangles in order of distance. Calls onNearer(triangle, point) for each that is nearer than max_m
-/// and than all triangles before (or as near, with a lower number, so that the tree's order does not matter).
-/// Returns the least squared distance. Skips boxes whose squared distance times box_weight is greater.
+/// Visits triangles in order of distance. Calls onNearer(triangle, point) for each triangle that is nearer
+/// than max_m and than all triangles before (or as near, with a lower number, so that the tree's order does
+/// not matter). Returns the least squared distance. Skips boxes whose squared distance times box_weight is
+/// greater.
 template <typename Visit>
 double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept {
   double best2 = max_m * max_m;
   if (nodes_.empty()) return best2;
   std::uint32_t best_triangle = 0;  // no triangle has a lower number
-  // Rounded up to a float, and finite: unused lanes are infinitely far.
+  // The limit is rounded up to a float, and finite: unused lanes are infinitely far.
   const auto limitOf = [box_weight](double squared) {
     constexpr float kRoundingUp = 1 + 4e-7f, kMost = std::numeric_limits<float>::max() / 2;
     return kRoundingUp * static_cast<float>(std::min(squared / box_weight, static_cast<double>(kMost)));

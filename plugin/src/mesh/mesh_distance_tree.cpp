@@ -32,7 +32,7 @@ void add(Box& box, const Box& other) {
 /// Divides ranges of triangles in two.
 class Divider {
  public:
-  /// The first part of what is divided has a multiple of `whole` triangles, the second takes the remainder.
+  /// The first part of a divided range has a multiple of `whole` triangles, the second takes the remainder.
   Divider(const std::vector<Box>& boxes, std::size_t whole) : boxes_(boxes), whole_(whole) {}
 
   [[nodiscard]] Box around(Range range) const {
@@ -42,7 +42,7 @@ class Divider {
   }
 
   /// Divides a range of more than `whole` triangles along the longest side of the box around their centres.
-  /// @param by_area  where the surface area heuristic says; if false, at the median
+  /// @param by_area  true: divides where the surface area heuristic says; false: at the median
   [[nodiscard]] std::pair<Range, Range> divided(Range range, bool by_area) const {
     Box centers;
     for (const std::uint32_t i : range) centers.add(boxes_[i].center());
@@ -80,7 +80,7 @@ class Divider {
       add(bin.box, boxes_[i]);
       ++bin.count;
     }
-    double cost_above[kBins] = {};  // of the bins from k on
+    double cost_above[kBins] = {};  // cost of the bins from k on
     Bin above;
     for (int k = kBins - 1; k > 0; --k) {
       above.join(bins[k]);
@@ -129,7 +129,7 @@ void MeshDistance::buildTree() {
   for (const Box& box : boxes) add(all, box);
   center_ = all.center();
   // Boxes and points are rounded to floats relative to the centre: a point as far away as the mesh is large
-  // has an error of 2^-24 of that, a corner of a box half as much.
+  // has an error of 2^-24 of its distance, a corner of a box half that error.
   constexpr double kRounding = 2.5e-7;
   const double margin_m = kRounding * 0.5 * all.size().norm();
   std::vector<std::uint32_t> order(count);

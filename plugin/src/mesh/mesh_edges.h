@@ -27,7 +27,7 @@ struct HalfEdge {
 };
 
 /// All half-edges of all triangles, grouped by edge and sorted by triangle. Triangles with a repeated corner
-/// have none. O(n): a counting sort by low vertex, then a sort of the few edges of each low vertex.
+/// have no half-edges. O(n): a counting sort by low vertex, then a sort of the few edges of each low vertex.
 inline std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
   const auto forEachSide = [&](auto visit) {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -39,7 +39,7 @@ inline std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
       }
     }
   };
-  // By low vertex: first the start of its edges, then their end.
+  // For each low vertex: first the start of the vertex's edges, later their end.
   std::vector<std::size_t> end(mesh.vertices.size() + 1, 0);
   forEachSide([&](const HalfEdge& e) { ++end[e.low + 1]; });
   for (std::size_t i = 1; i < end.size(); ++i) end[i] += end[i - 1];

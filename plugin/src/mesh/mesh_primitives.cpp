@@ -77,7 +77,8 @@ Mesh makeTube(double outer_m, double inner_m, double height_m, int segments) {
   const std::uint32_t outer_high = addRing(mesh, outer_m, height_m / 2, segments);
   const std::uint32_t inner_low = addRing(mesh, inner_m, -height_m / 2, segments);
   const std::uint32_t inner_high = addRing(mesh, inner_m, height_m / 2, segments);
-  // In the order around the section, so that every band faces out: outside, top, bore, bottom.
+  // The rings are joined in the order around the section, so that every band faces out: outside, top, bore,
+  // bottom.
   joinRings(mesh, outer_low, outer_high, segments);
   joinRings(mesh, outer_high, inner_high, segments);
   joinRings(mesh, inner_high, inner_low, segments);

@@ -80,9 +80,9 @@ void MeshDistance::computeSmoothCorners() {
           fan.push_back(&other);
         }
       // At a rim the facets' angles are a poor weight: on a thread's flank the angles before a vertex are
-      // wider than those after it. The mean leant by 0.003 rad along the thread, which drove a frictionless
-      // screw with 5 % more than its torque. But the rim lies in the surface, so the surface's normal is
-      // normal to the rim.
+      // wider than those after it. The mean normal leant by 0.003 rad along the thread, which drove a
+      // frictionless screw with 5 % more than its torque. But the rim lies in the surface, so the surface's
+      // normal is normal to the rim.
       Vec3 n = unitOrZero(sum);
       if (const auto rim = rimDirection(fan, mesh_.vertices, mesh_.vertices[v]); rim && fan.size() > 1)
         n = unitOrZero(n - n.dot(*rim) * *rim);

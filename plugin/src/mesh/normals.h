@@ -24,7 +24,7 @@ inline double angleBetween(const Vec3& u, const Vec3& v) {
 }
 
 /// False for a triangle so slim that the direction of its normal is rounding error: twice its area is at most
-/// this share of its longest edge's square.
+/// 1e-10 of its longest edge's square.
 inline bool hasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
   constexpr double kMinSlimness = 1e-10;
   const double longest2 = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});

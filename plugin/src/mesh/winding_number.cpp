@@ -67,7 +67,7 @@ void cutSlivers(std::vector<Corners>& triangles) {
   for (int n = 0; n < 30; ++n) {
     const double middle = 0.5 * (low + high);
     double pieces = 0;
-    // Halves of halves: up to twice as many each way as the limit asks for.
+    // Repeated halving makes up to twice as many pieces in each direction as the limit requires.
     for (const auto& [length, height] : sides)
       pieces += length <= middle ? 1 : (1 + 2 * length / middle) * (1 + 2 * height / middle);
     (pieces <= 3.0 * static_cast<double>(sides.size()) ? high : low) = middle;
@@ -103,7 +103,7 @@ struct WindingNumber::Moments {
     area += area_t;
     place += area_t * (t[0] + t[1] + t[2]) / 3;
   }
-  /// Another cluster's moments, its centre moved to this one's: s becomes s + t.
+  /// Adds another cluster's moments, moved to this cluster's centre: s becomes s + t.
   void add(const Moments& o) {
     const Vec3 t = o.center - center;
     n += o.n;
@@ -116,7 +116,7 @@ struct WindingNumber::Moments {
   /// Coefficients of the three polynomials, x < y < z.
   [[nodiscard]] std::array<double, 19> series() const {
     const double trace = sn.trace();
-    Vec3 v;  // what makes the cubic harmonic
+    Vec3 v;  // the vector that makes the cubic polynomial harmonic
     for (int k = 0; k < 3; ++k) {
       v[k] = ssn[k].trace();
       for (int i = 0; i < 3; ++i) v[k] += 2 * ssn[i](k, i);
@@ -199,7 +199,7 @@ void WindingNumber::build(std::vector<Corners> triangles, double cluster_error) 
     for (const Vec3& p : t) box.add(p);
   origin_ = box.center();
   const double size = box.size().maxCoeff();
-  // Within 1e-300 to 1e300, so that the scale is a number too.
+  // Sizes outside 1e-300 to 1e300 are not scaled, so that the scale is a finite number.
   scale_ = size > 1e-300 && size < 1e300 ? std::exp2(-std::ceil(std::log2(size))) : 1;
   for (Corners& t : triangles)
     for (Vec3& p : t) p = scale_ * (p - origin_);
@@ -218,7 +218,7 @@ void WindingNumber::build(std::vector<Corners> triangles, double cluster_error) 
   expand();
 }
 
-/// Moments from the leaves up, and from them each node's series and reach.
+/// Computes the moments from the leaves up, and from the moments each node's series and reach.
 void WindingNumber::expand() {
   std::vector<Moments> moments(nodes_.size());
   for (std::size_t n = nodes_.size(); n-- > 0;) {

@@ -105,7 +105,7 @@ std::uint64_t CacheFolder::removeLongestUnused(const fs::path& newest) const {
   const std::vector<Kept> files = filesOf(folder_);
   std::uint64_t bytes = 0;
   for (const Kept& kept : files) bytes += kept.bytes;
-  // A tenth is left free, so that not every later file needs another removal.
+  // A tenth of the limit is left free, so that not every later file needs another removal.
   const bool is_full = bytes > limit_bytes_;
   const std::uint64_t wanted = limit_bytes_ - limit_bytes_ / 10;
   for (const Kept& kept : files) {

@@ -38,7 +38,7 @@ class CacheFolder {
   const std::filesystem::path folder_;
   const Warn warn_;
   const std::uint64_t limit_bytes_;
-  std::mutex mutex_;         ///< of the members below
+  std::mutex mutex_;         ///< guards the members below
   bool has_failed_ = false;  ///< a file could not be written
   bool is_counted_ = false;  ///< bytes_ includes the files that were in the folder at first
   std::uint64_t bytes_ = 0;  ///< size of the folder's files, as far as known: other programs may write to it

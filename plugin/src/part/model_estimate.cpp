@@ -10,7 +10,7 @@
 namespace vps {
 namespace {
 
-/// Largest piece of surface over the size of a brick.
+/// Largest extent of a piece of surface, divided by the size of a brick.
 constexpr double kPiece = 0.5;
 /// The greatest number of pieces into which large triangles are cut. Assumed: a hundredth of a second.
 constexpr double kMostPieces = 1e4;

@@ -96,7 +96,8 @@ bool isOpenSurface(const Mesh& mesh, double wider_than_m) {
   return joined.open_m > 0 && widestHole_m(once, joined) > wider_than_m && !isSolidBesideSheets(once, joined);
 }
 
-/// The facet beside a side of a facet, where exactly two facets meet. In lists by 3 * facet + side.
+/// The facet next to a side of a facet, where exactly two facets meet. Lists of neighbours are indexed by 3 *
+/// facet + side.
 struct Neighbour {
   std::uint32_t facet = UINT32_MAX;
   std::uint8_t side = 0;

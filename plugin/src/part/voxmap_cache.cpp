@@ -61,8 +61,8 @@ Digest keyOf(const Mesh& mesh, const VoxMapSettings& settings) {
   return hash.digest();
 }
 
-/// Size of a file with this header; nothing if the numbers are impossible. Checked before memory is
-/// allocated.
+/// Size of a file with this header; nothing if the numbers are impossible. The size is checked before memory
+/// is allocated.
 std::optional<std::uint64_t> bytesOf(const Header& header) {
   constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 40;
   constexpr std::int64_t kFarthest =

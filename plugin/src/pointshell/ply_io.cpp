@@ -205,7 +205,7 @@ class PlyReader {
     }
   }
 
-  /// Checked before memory is allocated, because the count in a damaged file can be any number.
+  /// The size is checked before memory is allocated, because the count in a damaged file can be any number.
   void requireSize() const {
     const std::size_t least_bytes = header_.is_binary ? row_bytes_ : 2 * header_.properties.size();
     if (header_.count > rest_.size() / least_bytes)
@@ -258,8 +258,8 @@ class PlyReader {
       fail(where() + " has a normal of length " + std::to_string(length) + ", not 1");
   }
 
-  /// Keeps the bits of a normal that has unit length up to rounding; normalises one that was written with few
-  /// digits.
+  /// Keeps the bits of a normal that has unit length up to rounding; normalises a normal that was written
+  /// with few digits.
   static Vec3 unit(const Vec3& n) { return std::abs(n.squaredNorm() - 1) < 1e-14 ? n : n.normalized(); }
 
   std::string_view rest_;

@@ -15,19 +15,20 @@
 namespace vps {
 namespace {
 
-/// Least gap between points over spacing. Assumed: leaves a quarter of the spacing to the fill pass.
+/// Least gap between points, divided by the spacing. Assumed: leaves a quarter of the spacing to the fill
+/// pass.
 constexpr double kMinGap = 0.75;
 /// Candidates per square of spacing. Assumed: about five for each point that is kept; more change little.
 constexpr double kCandidates = 6;
-/// Greatest extent over spacing of a piece of surface that is assigned to a point. Assumed: about 15 pieces a
-/// point.
+/// Greatest extent of a piece of surface that is assigned to a point, divided by the spacing. Assumed: about
+/// 15 pieces a point.
 constexpr double kAreaPiece = 0.3;
 
-/// Height over spacing of a bump that gets points of its own. Assumed: 10 um at 1 mm, the depth that a
-/// verdict counts as contact.
+/// Height of a bump that gets points of its own, divided by the spacing. Assumed: 10 um at 1 mm, the depth
+/// that a verdict counts as contact.
 constexpr double kBump = 0.01;
-/// Cosine of 20 degrees: normals that are farther apart belong to a tight curve. A contact that moves along a
-/// face turns no farther.
+/// Cosine of 20 degrees: normals that are farther apart belong to a tight curve. The normal of a contact that
+/// moves along a face turns by no larger angle.
 constexpr double kCosTight = 0.94;
 /// Least length of the weighted sum of normals around a vertex, whose angles are a few radians.
 constexpr double kLeastMean = 1e-3;
@@ -233,7 +234,8 @@ class FaceSampler {
 
   /// How far a place on the surface protrudes beyond the nearest point, along the mean of both normals: zero
   /// on planes, cylinders, spheres and other surfaces that curve evenly between the two, convex or hollow.
-  /// Where the surface curves so tightly that the normals are far apart, along the place's own normal.
+  /// Where the surface curves so tightly that the normals are far apart, the height is measured along the
+  /// place's own normal.
   [[nodiscard]] double heightOf(const Vec3& p, const Vec3& n) const {
     constexpr std::uint32_t kNone = 0xffffffff;
     std::uint32_t found = kNone;
@@ -275,8 +277,8 @@ class FaceSampler {
   }
 
   /// Adds samples until every point of the piece has one within the spacing. A piece of extent e whose centre
-  /// is d from a sample lies within d + e of it. If that is too far, either the centre is free for a new
-  /// sample or the piece is halved; halving ends at e <= (1 - kMinGap) spacing at the latest.
+  /// is d from a sample lies within d + e of it. If d + e is more than the spacing, either the centre is free
+  /// for a new sample or the piece is halved; halving ends at e <= (1 - kMinGap) spacing at the latest.
   void cover(const Piece& piece, const Vec3& n) {
     const double extent_m = piece.extent();
     const Vec3 center = piece.center();

@@ -114,7 +114,8 @@ class FeatureSampler {
     return chain;
   }
 
-  /// Adds points along a chain. From each point it goes to the farthest vertex that step and tolerance allow.
+  /// Adds points along a chain. The next point after each point is the farthest vertex that step and
+  /// tolerance allow.
   void sample(const Chain& chain) {
     addVertex(chain.vertices.front());
     for (std::size_t i = 0; i + 1 < chain.vertices.size();) {

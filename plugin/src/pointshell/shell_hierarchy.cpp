@@ -14,7 +14,8 @@ constexpr std::size_t kLeafPoints = kLanes;
 
 /// Where a range of `count` points is split: near the middle, at a multiple of the leaf size, so that leaves
 /// are full, and of the largest power of 16 that leaves both halves non-empty, so that sixteen consecutive
-/// leaves are neighbours. Sorting and hierarchy use the same rule, and a saved shell finds its leaves by it.
+/// leaves are neighbours. Sorting and hierarchy use the same rule, and the leaves of a saved shell are found
+/// by this rule.
 std::size_t cut(std::size_t count) {
   std::size_t unit = kLeafPoints;
   while (2 * unit * kLanes <= count) unit *= kLanes;
@@ -67,7 +68,7 @@ void setSphere(ShellBlock& block, const Vec3& center, double radius_m) {
   block.radius_m = radius_m * (1 + 1e-6);
 }
 
-/// Sets lane i of a block, and all lanes after it until those are set.
+/// Sets lane i of a block, and also all later lanes, which keep the value until they are set.
 void setLane(ShellBlock& block, std::uint32_t lane, const Vec3& p, double weight) {
   const Vec3 offset = p - Vec3(block.center[0], block.center[1], block.center[2]);
   block.x[lane] = static_cast<float>(offset.x());
@@ -201,7 +202,7 @@ std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {
   constexpr int kLevels = 32;  // from metres to below a nanometre; remaining points are duplicates
   constexpr std::size_t kFew = 8;
   std::vector<std::uint32_t> joined;  // points that a waiting point may be near
-  std::size_t taken = 0;              // of order, into `joined`
+  std::size_t taken = 0;              // number of entries of `order` that are in `joined`
   for (int level = 0; level < kLevels && !waiting.empty() && radius_m > 0; ++level, radius_m /= 2) {
     joined.insert(joined.end(), order.begin() + static_cast<std::ptrdiff_t>(taken), order.end());
     taken = order.size();

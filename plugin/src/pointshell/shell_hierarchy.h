@@ -17,7 +17,7 @@ std::vector<std::uint32_t> sortedOrder(std::span<const Vec3> points);
 /// The sphere hierarchy over sorted points: ranges are halved until a leaf has 16 or fewer.
 std::vector<ShellNode> sphereHierarchy(std::span<const Vec3> points);
 
-/// Up to sixteen points in a row of a shell as a block, about the node's centre.
+/// Up to sixteen consecutive points of a shell as a block, about the node's centre.
 ShellBlock leafBlock(const PointShell& shell, const ShellNode& leaf);
 
 /// Fills shell.blocks from its points, areas and the leaves of its nodes.

@@ -8,9 +8,9 @@
 
 namespace vps {
 
-/// Spacing of points on edges over the spacing on faces. Assumed: tight fits touch at edges, and the cost of
-/// points on edges is proportional only to length. A vertex of a chain is left out if that moves the rim by
-/// less than 1/500 of the spacing: 1 um at 0.5 mm, a fifth of the allowance of a 20 um fit.
+/// Spacing of points on edges, divided by the spacing on faces. Assumed: tight fits touch at edges, and the
+/// cost of points on edges is proportional only to length. A vertex of a chain is left out if its omission
+/// moves the rim by less than 1/500 of the spacing: 1 um at 0.5 mm, a fifth of the allowance of a 20 um fit.
 inline constexpr double kEdgeStep = 0.5;
 inline constexpr double kEdgeTolerance = 1.0 / 500;
 
@@ -21,7 +21,7 @@ struct ShellSample {
   double area_m2 = 0;
 };
 
-/// Unit normal of each triangle; zero for a triangle that has none.
+/// Unit normal of each triangle; zero for a triangle without a normal.
 std::vector<Vec3> triangleNormals(const Mesh& mesh);
 
 /// Samples corners first, then sharp edges.
@@ -37,16 +37,16 @@ std::vector<ShellSample> sampleFeatures(const Mesh& mesh, const std::vector<Vec3
 
 /// Adds points on faces to samples (which may already contain features). Afterwards every point of the
 /// surface has a sample within spacing_m that faces the same way (normals less than 90 degrees apart, so that
-/// a thin wall is sampled on both sides). No new point is within 0.75 spacing_m of another that faces the
-/// same way, except on bumps: no smooth vertex protrudes by more than a hundredth of spacing_m beyond its
+/// a thin wall is sampled on both sides). No new point is within 0.75 spacing_m of another point that faces
+/// the same way, except on bumps: no smooth vertex protrudes by more than a hundredth of spacing_m beyond its
 /// nearest point. Then assigns to each sample the area nearest to it. Deterministic. O(area / spacing^2 +
 /// vertices).
 void sampleFaces(const Mesh& mesh, const std::vector<Vec3>& normals, double spacing_m,
                  std::vector<ShellSample>& samples);
 
-/// For a sheet: adds a copy of each sample that faces the other way, and samples of the border. The samples
-/// are at most step_m apart and face away from the sheet in its plane. Where sheets meet, coincident edges of
-/// one facet each are no border.
+/// For a sheet: adds a copy of each sample that faces the other way, and samples of the border. The border's
+/// samples are at most step_m apart and face away from the sheet in its plane. Where sheets meet, coincident
+/// edges of one facet each are no border.
 void addOtherSides(const Mesh& mesh, double step_m, std::vector<ShellSample>& samples);
 
 }  // namespace vps

@@ -34,7 +34,7 @@ VdbArchive::VdbArchive(std::string bytes, double limit_bytes) : stream_(std::mov
   }
 }
 
-/// Reads metadata and transform; leaves the stream at the begin of the grid.
+/// Reads metadata and transform; leaves the stream at the beginning of the grid.
 void VdbArchive::list(Entry& entry) {
   entry.grid = entry.descriptor.read(stream_);
   entry.grid->setSaveFloatAsHalf(entry.descriptor.saveFloatAsHalf());

@@ -3,8 +3,8 @@
 // headers are slow to compile.
 //
 // Other programs read the grid "surface". Two more grids make a reload exact: "vps_center" (one value per
-// directory cell: the bound at its centre) and, if parts are merged, "vps_owner". A mark with a checksum ends
-// the file. Files of other programs have none of these; their bounds are computed from the nodes
+// directory cell: the bound at its centre) and, if parts are merged, "vps_owner". A signature with a checksum
+// ends the file. Files of other programs have none of these items; their bounds are computed from the nodes
 // (field_bounds.h).
 #pragma once
 
@@ -32,14 +32,14 @@ inline std::string partKey(std::size_t part, const char* what) {
 /// Initialises OpenVDB once. Thread-safe.
 void initializeOpenVdb();
 
-/// The mark and checksum that end a file of saveVdb(). OpenVDB's reader trusts the file, and a wrong byte can
-/// make it write out of bounds, so the checksum is verified first.
+/// The signature and checksum that end a file of saveVdb(). OpenVDB's reader trusts the file, and a wrong
+/// byte can make it write out of bounds, so the checksum is verified first.
 std::string endOf(std::string_view bytes);
 
 enum class Origin {
   Ours,     ///< written by saveVdb() and unchanged
   Changed,  ///< written by saveVdb(), but changed
-  Others    ///< of another program
+  Others    ///< written by another program
 };
 Origin originOf(std::string_view bytes);
 

@@ -31,8 +31,8 @@ class Filler {
  public:
   explicit Filler(VoxLayout& layout) : layout_(layout) {}
 
-  /// The surface does not pass through empty cells, so a sign spreads from cell to cell. It starts at the
-  /// rim, which is outside, so that a fault of the mesh cannot make the outside inside.
+  /// The surface does not pass through empty cells, so a sign spreads from cell to cell. The spreading of
+  /// signs starts at the rim, which is outside, so that a fault of the mesh cannot make the outside inside.
   void run() {
     is_filled_.resize(layout_.bricks.size());
     for (std::size_t i = 0; i < layout_.bricks.size(); ++i) is_filled_[i] = !isConstant(layout_.bricks[i]);

@@ -102,8 +102,8 @@ struct Splatter::Edge {
     bound();
   }
 
-  /// The pseudonormal if a triangle at the edge has no normal. The foot counts as within the edge even if t
-  /// is at its end, or past it by rounding, because only facets along the edge matter.
+  /// The pseudonormal if a triangle at the edge has no normal. The foot of the perpendicular counts as within
+  /// the edge even if t is at its end, or past it by rounding, because only facets along the edge matter.
   [[nodiscard]] Vec3 normalAt(double t) const {
     const double margin = std::min(2 * SurfaceFeatures::kTouch, 0.5 * length);
     const double within = std::clamp(t, margin, length - margin);

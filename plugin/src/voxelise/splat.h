@@ -3,7 +3,7 @@
 // nearest feature in whose region it lies; this is the distance to the surface (surface_features.h).
 //
 // The cost is proportional to the number of nodes within the band, not to that number times the triangles
-// around each: most nodes are in the region of only one or two features.
+// around each node: most nodes are in the region of only one or two features.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ constexpr int tileIndex(int x, int y, int z) {
   return (x * kTileNodes + y) * kTileNodes + z;
 }
 
-/// Reads features; use one per thread.
+/// Reads features; use one Splatter per thread.
 class Splatter {
  public:
   /// @param band  greatest distance that is written, in voxels

@@ -29,7 +29,7 @@ class SurfaceFeatures {
  public:
   struct Edge {
     std::uint32_t a, b;   ///< vertices, a < b
-    std::uint32_t first;  ///< index of the first of its sides
+    std::uint32_t first;  ///< index of the first of the edge's sides
   };
 
   /// A point within this distance of a corner or a side lies on it [voxels].
@@ -52,7 +52,7 @@ class SurfaceFeatures {
   [[nodiscard]] std::span<const TriangleSide> sidesOf(std::uint32_t edge) const {
     return std::span(sides_).subspan(edges_[edge].first, edges_[edge + 1].first - edges_[edge].first);
   }
-  /// The sides that begin at a vertex, one for each triangle there.
+  /// The sides that begin at a vertex, one for each triangle at the vertex.
   [[nodiscard]] std::span<const TriangleSide> sidesFrom(std::uint32_t vertex) const {
     return std::span(corners_).subspan(first_corner_[vertex],
                                        first_corner_[vertex + 1] - first_corner_[vertex]);
@@ -61,9 +61,9 @@ class SurfaceFeatures {
   [[nodiscard]] bool isRegular(std::uint32_t vertex) const { return is_regular_[vertex] != 0; }
   /// Sum of the normals at a vertex, weighted by angle. Source: Baerentzen and Aanaes 2005.
   [[nodiscard]] Vec3 pseudonormal(std::uint32_t vertex) const;
-  /// As above, at a point q of the surface, from the triangles `around` it and from triangles that touch q
-  /// behind triangles without a normal: a collinear triangle that closes a T-junction hides the face to which
-  /// it belongs. Slower than pseudonormal().
+  /// The pseudonormal at a point q of the surface, from the triangles `around` it and from triangles that
+  /// touch q behind triangles without a normal: a collinear triangle that closes a T-junction hides the face
+  /// to which it belongs. Slower than pseudonormal().
   [[nodiscard]] Vec3 pseudonormalThrough(const Vec3& q, std::span<const TriangleSide> around) const;
   /// True if one of the triangles has no normal.
   [[nodiscard]] bool hasThin(std::span<const TriangleSide> sides) const;

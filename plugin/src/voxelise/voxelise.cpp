@@ -175,7 +175,8 @@ void Voxeliser::splatTile(Splatter& splatter, std::size_t at, Tile& tile) const 
 
 /// The bricks of a tile that have a node within the band.
 std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) const {
-  // Bit b of a row along z: brick b has a known node there. A brick's last node is the next brick's first.
+  // Bit b of a row along z: brick b has a known node in the row. A brick's last node is the next brick's
+  // first.
   std::array<std::uint8_t, std::size_t{kTileNodes}* kTileNodes> rows = {};
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const float* d = &tile[row * kTileNodes];
@@ -202,8 +203,8 @@ std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) c
   return bricks;
 }
 
-/// Bits of a row along z in a brick; bit z: the node is so near the surface that it may be nearest to a point
-/// of it.
+/// Bits of a row along z in a brick; bit z: the node is so near the surface that it may be the nearest node
+/// of a surface point.
 std::uint8_t nearBits(const float* row) {
   constexpr auto kNearBits = std::bit_cast<std::uint32_t>(static_cast<float>(SurfaceBits::kNear));
   unsigned bits = 0;
@@ -323,7 +324,7 @@ std::optional<VoxMap> voxelised(const Mesh& surface, const Interior* interior, c
   return VoxMapAccess::make(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
 }
 
-/// As above, for a mesh whose interior is decided by winding numbers.
+/// voxelised() for a mesh whose interior is decided by winding numbers.
 VoxMap voxelised(RepairedMesh repaired, const Box& box, const VoxMapSettings& settings,
                  const Progress& progress, MeshReport* report) {
   const Interior interior(std::move(repaired.solid), bounds(repaired.surface));

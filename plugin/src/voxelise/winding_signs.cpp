@@ -90,7 +90,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
   Box box;
   box.add(voxel_m * low.cast<double>());
   box.add(voxel_m * (low + Index3::Constant(kBrick)).cast<double>());
-  const double loss = interior_.slope().bound(box) * voxel_m;  // of margin per step, bound for the brick
+  const double loss = interior_.slope().bound(box) * voxel_m;  // loss of margin per step, bound for the brick
   Count count;
   std::array<int, kBrickNodes> size;
   std::array<float, kBrickNodes> margin;
@@ -104,7 +104,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
   std::array<std::int16_t, kBrickNodes> queue;
   // Near a border, with one bound for the whole brick, each of its nodes would need a winding number of its
   // own.
-  constexpr double kSmallLoss = 0.005;  // of a margin of 0.25, of which a brick has sixteen steps
+  constexpr double kSmallLoss = 0.005;  // per step, from a margin of 0.25; a brick has sixteen steps
   std::array<float, kBrickNodes> loss_of;
   if (loss > kSmallLoss) loss_of.fill(-1);
   const auto lossAt = [&](int i) {
@@ -136,8 +136,9 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
       });
     }
   };
-  // First the nodes from which a sign spreads. Nodes next to the surface follow; most take their sign across
-  // a diagonal, because next to an oblique surface no neighbour along an axis is far enough.
+  // The first pass signs the nodes from which a sign spreads. Nodes next to the surface follow; most take
+  // their sign across a diagonal, because next to an oblique surface no neighbour along an axis is far
+  // enough.
   for (const bool is_first : {true, false})
     for (int seed = 0; seed < kBrickNodes; ++seed) {
       if (margin[seed] >= 0 || (is_first && !(2 * size[seed] > step))) continue;
@@ -308,7 +309,7 @@ bool hasJump(const NodeValue* a, const NodeValue* b, int count, std::uint16_t st
     const U16 size_a = static_cast<U16>(a[i] < 0 ? -a[i] : a[i]),
               size_b = static_cast<U16>(b[i] < 0 ? -b[i] : b[i]);
     const U16 apart = static_cast<U16>(size_a + size_b);  // at most 65534
-    const U16 opposite = static_cast<U16>(a[i] ^ b[i]);   // in its highest bit
+    const U16 opposite = static_cast<U16>(a[i] ^ b[i]);   // the highest bit is set if the signs are opposite
     const U16 far = apart > step ? 0x8000 : 0;
     const U16 in_band = (size_a > size_b ? size_a : size_b) < kFullBand ? 0x8000 : 0;
     seen |= static_cast<U16>(opposite & far & in_band & mask[i]);

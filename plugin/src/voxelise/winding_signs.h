@@ -26,7 +26,7 @@ class WindingSigner {
   /// corners of a cell disagree; these cells become bricks with a sign for each node. Does nothing for a
   /// closed mesh.
   void signEmptyCells(VoxLayout& layout, double voxel_m, double quantum_m);
-  /// Fraction of the nodes signed so far, of the band, whose winding number is more than 0.25 from 0.5.
+  /// Fraction of the band's nodes, of those signed so far, whose winding number is more than 0.25 from 0.5.
   [[nodiscard]] double certainShare() const noexcept;
 
  private:
@@ -45,7 +45,7 @@ class WindingSigner {
 };
 
 /// False if two neighbours within a brick have different signs although the surface cannot pass between them.
-/// Then pseudonormals are wrong, most likely because the mesh crosses itself.
+/// In this case pseudonormals are wrong, most likely because the mesh crosses itself.
 bool signsAgree(const VoxLayout& layout, double voxel_m, double quantum_m);
 
 }  // namespace vps

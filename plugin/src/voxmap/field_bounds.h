@@ -16,7 +16,8 @@ namespace vps {
 /// z of rows[x / 2 * 4 + y / 2] is set if one of the four nodes (x, y), (x, y + 1), ... is such a node.
 struct SurfaceBits {
   std::array<std::uint8_t, 16> rows = {};
-  static constexpr double kNear = 0.8661;  ///< voxels: sqrt(3) / 2, the greatest distance of such a node
+  /// Voxels: sqrt(3) / 2, the greatest distance from a point to its nearest node.
+  static constexpr double kNear = 0.8661;
 };
 
 /// Returns a lower bound of the distance from each cell's centre to the surface [voxels]; it is too small by
@@ -57,10 +58,10 @@ inline float steepnessOf(int difference, double voxel_m, double quantum_m) {
 /// Sets the bounds that queries rely on from the nodes alone: steepest, node_error, centers_m and parts.
 /// Returns the box of the surface, empty if no sign changes. Deterministic. O(nodes).
 ///
-/// Culling needs a 1-Lipschitz function near the nodes; true distances are one, but are not required. Let N
-/// be the nodes below the band, in voxels, and take the cones f(p) = min over j in N of (node_j + e + |p -
-/// j|). f is 1-Lipschitz, and |node - f| <= e at every node (at saturated nodes: |node - min(f, band)| <= e)
-/// if node_i - node_j <= |i - j| + 2e for all i, j. This condition holds with
+/// Culling needs a 1-Lipschitz function near the nodes; true distances are such a function, but are not
+/// required. Let N be the nodes below the band, in voxels, and take the cones f(p) = min over j in N of
+/// (node_j + e + |p - j|). f is 1-Lipschitz, and |node - f| <= e at every node (at saturated nodes: |node -
+/// min(f, band)| <= e) if node_i - node_j <= |i - j| + 2e for all i, j. This condition holds with
 ///   2e = 2 band (1 - 1 / (c s)),
 /// if nodes of one grid cell differ by at most s times their distance: a path over grid cells from i to j is
 /// at most c = 1.1281 times as long as |i - j|, so the difference is at most min(2 band, c s |i - j|). The

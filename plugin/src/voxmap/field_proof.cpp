@@ -16,10 +16,11 @@ namespace {
 /// sqrt 2)|.
 constexpr double kLattice = 1.1281;
 
-/// Measurements over bricks. These bounds are minima and maxima only, so that their order does not matter.
+/// Measurements over bricks. The measurements are minima and maxima only, so that their order does not
+/// matter.
 struct Measure {
   int along = 0, across = 0, diagonal = 0;  ///< differences on a cell's edges, faces, and diagonals [quanta]
-  Box surface;                              ///< of the field's zeros on edges [voxels]
+  Box surface;                              ///< box of the field's zeros on edges [voxels]
 
   void add(const Measure& other) {
     along = std::max(along, other.along);
@@ -153,7 +154,7 @@ class Proof {
         least =
             std::max(least, band_ - kMargin +
                                 static_cast<double>(layout_.bricks[i] == kOutside ? outside[i] : inside[i]));
-      // Rounded down, so that it stays a bound.
+      // The bound is rounded down, so that it stays a bound.
       const double least_m = std::max(0.0, least - error_) * voxel_m_ * (1 - 1e-6);
       layout_.centers_m[i] = static_cast<float>(center < 0 ? -least_m : least_m);
     });

@@ -70,8 +70,8 @@ void requireMemory(double bytes, const std::string& what_for, const std::string&
 
 namespace {
 
-/// Bytes for a map of this surface: the directory, and bricks that meet a slab around the surface. The slab
-/// is as thick as the band plus a brick's slant.
+/// Bytes for a map of a surface: the directory, and bricks that meet a slab around the surface. The slab is
+/// as thick as the band plus a brick's slant.
 double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_voxels) {
   const double cell_m = VoxMap::kBrick * h;
   const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);

@@ -16,7 +16,7 @@ void requireSettings(const VoxMapSettings& settings, const std::string& part = "
 void requirePose(const Pose& X_MP);
 
 /// Refuses a surface's box so far from the origin that indices of its cells would overflow: at more than half
-/// the range of 32 bits. The other half is for the size of the box. Refuses NaN too.
+/// the range of 32 bits. The other half of the range is for the size of the box. Refuses NaN too.
 void requireNear(const Box& bounds_M, double voxel_m, const std::string& part = "");
 
 /// Bytes of a directory with this number of cells along each axis.

@@ -13,7 +13,7 @@ class VPS_API VoxMapAccess {
   [[nodiscard]] static const std::shared_ptr<const VoxLayout>& layout(const VoxMap& map) noexcept {
     return map.layout_;
   }
-  /// A layout as a map.
+  /// Makes a map of a layout.
   /// @param band_m  the band that was asked for, or the band as nodes represent it; see bandHeld()
   /// @param bounds  box of the surface, in M
   static VoxMap make(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
@@ -40,7 +40,7 @@ class AddedField : public CellBox {
 
 /// The union of a map and a field on its grid; the field's parts get the next owner numbers.
 VoxMap mergedVoxMap(const VoxMap& a, const AddedField& b, const Box& bounds_of_b);
-/// As above, for two maps with equal voxel and band.
+/// The union of two maps with equal voxel and band.
 VoxMap mergedVoxMap(const VoxMap& a, const VoxMap& b);
 
 /// The map with its bricks in a pool of its own, without the bricks that merging leaves unused.

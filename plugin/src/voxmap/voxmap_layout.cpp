@@ -38,7 +38,7 @@ std::uint32_t VoxPool::take(std::size_t count) noexcept {
   std::size_t first = used_;
   const auto run = std::find_if(free_.begin(), free_.end(), [&](const auto& r) { return r.second >= count; });
   if (run != free_.end()) {
-    // Taken from the end of the run: its entry in the list stays, and nothing is allocated.
+    // Bricks are taken from the end of the run: its entry in the list stays, and nothing is allocated.
     first = run->first + (run->second -= count);
     if (run->second == 0) free_.erase(run);
   } else {

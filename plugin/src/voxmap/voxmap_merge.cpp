@@ -24,8 +24,8 @@ bool inRange(const VoxPartRange& part, const Index3& cell) {
 }
 
 /// A lower bound of the distance from a cell's centre to the parts whose own range does not contain the cell;
-/// for the other parts the directories have better bounds. Rounded towards zero when converted to float, so
-/// that it stays a bound.
+/// for the other parts the directories have better bounds. The bound is rounded towards zero when converted
+/// to float, so that it stays a bound.
 float boxBound(const std::vector<VoxPartRange>& parts, const Index3& cell, double voxel_m) {
   const Vec3 center = voxel_m * (VoxMap::kBrick * cell + Index3::Constant(VoxMap::kBrick / 2)).cast<double>();
   double least_m = 1e30;

@@ -35,7 +35,7 @@ class VoxSampler {
 
   [[nodiscard]] Place place(const Vec3& p_M) const noexcept { return placeInVoxels(p_M * per_voxel_ - low_); }
 
-  /// As above, for a position from the directory's corner, in voxels.
+  /// The place of a position that is given from the directory's corner, in voxels.
   [[nodiscard]] Place placeInVoxels(const Vec3& x) const noexcept {
     Place at;
     // NaN fails this test. Within the directory x >= 0, so truncation is the floor.
@@ -215,7 +215,7 @@ class VoxSampler {
   [[nodiscard]] double leastDistanceOutside(const Vec3& p_M) const noexcept {
     if (layout_.bricks.empty()) return boxDistance(p_M);
     const Vec3 low = low_ * voxel_m_, high = (low_ + size_) * voxel_m_;
-    // Slightly inside, so that rounding cannot move the point out of the directory.
+    // The point is kept slightly inside, so that rounding cannot move the point out of the directory.
     const Vec3 hair = Vec3::Constant(1e-6 * voxel_m_);
     const Vec3 c = p_M.cwiseMax(low + hair).cwiseMin(high - hair);
     const Place at = place(c);

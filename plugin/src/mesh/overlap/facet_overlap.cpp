@@ -54,7 +54,7 @@ double greatestRadius_m(const Polygon& polygon) {
 
 struct Piece {
   std::array<Vec3, 3> corners;
-  double bound_m;  ///< upper bound of the depth of its points
+  double bound_m;  ///< upper bound of the depth of the piece's points
 };
 
 std::array<Piece, 2> halves(const Piece& piece, const Vec3& probe, double depth_m) {
@@ -118,7 +118,8 @@ class FacetSearch {
     const double facing = nearest.normal.dot(normal_S_);
     record(deepest_, depth_m, probe);
     if (std::abs(depth_m) <= kOverlapCertain_m && facing > kParallel) flush_.push_back({probe, normal_S_});
-    // Two faces in contact, or with a gap that is thin compared with the piece.
+    // Two faces that are in contact, or have a gap that is thin compared with the piece, need no finer
+    // pieces.
     const double contact_m = deepest_.is_between_edges ? kOverlapCertain_m : needed_m(deepest_);
     const double gap_m = kOverlapCertain_m + (piece.corners[1] - piece.corners[0]).norm() / kThin;
     if (depth_m >= -gap_m && depth_m <= contact_m && facing < -kParallel) return;

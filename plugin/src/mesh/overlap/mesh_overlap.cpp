@@ -30,7 +30,7 @@ struct EdgeGroups {
   }
 
   std::vector<Box> boxes;
-  BoxTree tree;  ///< over these boxes
+  BoxTree tree;  ///< a tree over `boxes`
 };
 
 namespace {

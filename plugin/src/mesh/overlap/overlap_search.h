@@ -31,8 +31,8 @@ struct FlushPoint {
 std::vector<FlushPoint> searchFacets(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO,
                                      std::span<const std::uint32_t> facets, Deepest& deepest);
 
-/// Searches below points that are in both surfaces, half way to the end of the first of the solids. Call it
-/// last, because it finds half of a depth that a probe between edges may find.
+/// Searches below points that are in both surfaces, half way to the end of the first of the solids. Call
+/// searchBelow() last, because it finds half of a depth that a probe between edges may find.
 void searchBelow(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO,
                  std::span<const FlushPoint> points, Deepest& deepest);
 

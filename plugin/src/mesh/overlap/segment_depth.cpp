@@ -27,7 +27,7 @@ struct Probe {
     signed_m = is_inside ? -nearest.distance_m : nearest.distance_m;
     triangle = nearest.triangle;
   }
-  /// 1 outside, -1 inside; 0 nearer to the surface than certain_m, where it may be either.
+  /// 1 outside, -1 inside; 0 nearer to the surface than certain_m, where the point may be on either side.
   [[nodiscard]] int side(double certain_m) const {
     return std::abs(signed_m) <= certain_m ? 0 : signed_m > 0 ? 1 : -1;
   }
@@ -60,15 +60,15 @@ void searchAnywhere(const Solid& solid, const Probe& from, const Probe& to, doub
     const double most_m = std::min(std::abs(piece.a.signed_m), std::abs(piece.b.signed_m)) + 0.5 * length_m;
     const Probe middle(solid, 0.5 * (a + b), reached(most_m));
     keep(deepest, -middle.signed_m, middle.p);
-    // No number lies between the ends.
+    // No floating-point number lies between the ends of the piece.
     if ((middle.p - a).norm() == 0 || (middle.p - b).norm() == 0) continue;
     stack.push_back({piece.a, middle});
     stack.push_back({middle, piece.b});
   }
 }
 
-/// True if the pieces between crossings are alternately inside and outside. This holds unless rounding has
-/// lost or added a crossing.
+/// True if the pieces between crossings are alternately inside and outside. This order holds unless rounding
+/// has lost or added a crossing.
 bool doAlternate(const Solid& solid, const Probe& from, const Probe& to, const std::vector<double>& ends,
                  double certain_m) {
   const double length_m = (to.p - from.p).norm();

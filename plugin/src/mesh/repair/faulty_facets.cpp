@@ -99,13 +99,13 @@ std::size_t longestSide(const Mesh& mesh, const FacetCorners& t) {
   return longest;
 }
 
-/// One round of leaving out facets without area. Each round splits a facet at most once.
+/// One pass that leaves out facets without area. Each pass splits a facet at most once.
 class FlatFacets {
  public:
   explicit FlatFacets(Mesh& mesh)
       : mesh_(mesh), edges_(sortedHalfEdges(mesh)), is_done_(mesh.triangles.size(), 0) {}
 
-  /// False if there were no facets without area.
+  /// Returns false if there were no facets without area.
   bool leaveOut() {
     const std::size_t count = mesh_.triangles.size();
     bool has_any = false;
@@ -124,14 +124,14 @@ class FlatFacets {
     const std::uint32_t from = t[k], to = t[(k + 1) % 3], middle = t[(k + 2) % 3];
     const HalfEdge* const across = facetAcross(from, to);
     if (across != nullptr) {
-      if (is_done_[across->triangle] != 0) return;  // in the next round
+      if (is_done_[across->triangle] != 0) return;  // in the next pass
       split(*across, middle);
     }
     mesh_.triangles[i] = {from, from, from};
     is_done_[i] = 1;
   }
 
-  /// A facet whose side runs from `to` to `from`, or null; if possible one that was not split in this round.
+  /// A facet whose side runs from `to` to `from`, or null; if possible one that was not split in this pass.
   [[nodiscard]] const HalfEdge* facetAcross(std::uint32_t from, std::uint32_t to) const {
     const std::uint32_t low = std::min(from, to), high = std::max(from, to);
     auto e = std::lower_bound(edges_.begin(), edges_.end(), low, [&](const HalfEdge& edge, std::uint32_t) {
@@ -159,7 +159,7 @@ class FlatFacets {
 }  // namespace
 
 std::optional<Mesh> withoutFlatFacets(Mesh mesh) {
-  constexpr int kRounds = 64;  // a fan of facets without area needs one round for each of them
+  constexpr int kRounds = 64;  // a fan of facets without area needs one pass for each of its facets
   for (int round = 0; round < kRounds; ++round)
     if (!FlatFacets(mesh).leaveOut()) return mesh;
   return std::nullopt;

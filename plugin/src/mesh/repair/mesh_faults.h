@@ -22,7 +22,7 @@ struct JoinedFacets {
 };
 
 /// Widest gaps, as shares of the mesh's size. Assumed: cracks of 30 um in a part of 20 mm, and copies of a
-/// facet 8 um apart. Facets farther apart than these may be the two sides of a plate.
+/// facet 8 um apart. Facets farther apart than these gaps may be the two sides of a plate.
 inline constexpr double kWidestCrack = 1.6384e-3;
 inline constexpr double kWidestBetweenCopies = 4.096e-4;
 
@@ -53,19 +53,19 @@ struct ClosedCracks {
 };
 
 /// Widest crack that is closed: this share of the mesh's size, and at most kClosedCrack_m. Assumed: a motion
-/// of the surface by less changes no verdict, because verdicts tolerate 2 um (DESIGN.md).
+/// of the surface by less than 2 um changes no verdict, because verdicts tolerate 2 um (DESIGN.md).
 inline constexpr double kClosedCrackShare = 1e-4, kClosedCrack_m = 2e-6;
 
-/// Joins vertices of open edges that are this near to each other, and nearer than a quarter of the edges
-/// beside them: all move to the one with the most facets. Facets that lose a corner are left out. Returns the
-/// mesh unchanged if there are no such vertices. O(n log n).
+/// Joins vertices of open edges whose distance is at most that of the widest closed crack, and less than a
+/// quarter of the edges beside them: all move to the vertex with the most facets. Facets that lose a corner
+/// are left out. Returns the mesh unchanged if there are no such vertices. O(n log n).
 ClosedCracks closeCracks(const Mesh& mesh, const std::vector<HalfEdge>& edges);
 
 /// Flags all but one of each set of triangles with the same corners; the first triangle of the majority
 /// orientation stays. Of back-to-back pairs none stays if an even number of other facets ends at each edge of
-/// the pair and of pairs connected to it, since these facets close without it: a wall between two solids.
-/// Otherwise one stays, of undecided orientation: a surface that was exported for both sides, or given twice
-/// and turned once. O(n log n).
+/// the pair and of pairs connected to it, since these facets close without the pair: it is a wall between two
+/// solids. Otherwise one facet of the pair stays, of undecided orientation: a surface that was exported for
+/// both sides, or given twice and turned once. O(n log n).
 /// @param edges  half-edges of the same triangles
 std::vector<std::uint8_t> findDuplicates(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                          const std::vector<HalfEdge>& edges);

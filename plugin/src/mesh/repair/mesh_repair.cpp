@@ -31,8 +31,9 @@ constexpr double kClearly = 0.35;
 /// If there are at most this many sheets and walls, they are searched for copies of the surface, at the cost
 /// of a winding number of the whole mesh each. Assumed: copies are few.
 constexpr std::size_t kMaxCopies = 32;
-/// Winding number in a facet's plane above which both sides are clearly inside. It is 0.5 more behind the
-/// facet and 0.5 less in front, and a threshold of 0.75 leaves a margin of a quarter on both sides.
+/// Winding number in a facet's plane above which both sides are clearly inside. The winding number is 0.5
+/// more behind the facet and 0.5 less in front, and a threshold of 0.75 leaves a margin of a quarter on both
+/// sides.
 constexpr double kInternal = 1.25;
 /// Winding number in a facet's plane below which both sides are clearly outside, by the same margin.
 constexpr double kExternal = -0.25;
@@ -133,15 +134,15 @@ class Repairer {
   }
 
  private:
-  /// For a repair without a union of shells.
+  /// Constructor for a repair without a union of shells.
   Repairer(const Mesh& mesh, bool is_single) : is_crossing_(false), is_single_(is_single) {
     result_.solid = mesh;
   }
 
   enum class Keep : std::uint8_t { Both, Solid, Surface, None };
 
-  /// The union of closed shells, if some of them touch, with the other patches repaired beside it. Duplicates
-  /// are tested first: if they are the only fault, they are copies of facets.
+  /// The union of closed shells, if some of them touch, with the other patches repaired next to it.
+  /// Duplicates are tested first: if they are the only fault, they are copies of facets.
   std::optional<RepairedMesh> unitedShells() {
     if (is_crossing_ || is_single_) return std::nullopt;
     std::optional<Mesh> solid = report().degenerate_triangles > 0 ? withoutFlatFacets(mesh()) : mesh();
@@ -440,7 +441,7 @@ class Repairer {
     return closed;
   }
 
-  /// The facets of these patches that have area; shells are numbered in the order of the list.
+  /// The facets of the given patches that have area; shells are numbered in the order of the list.
   ShellFacets facetsOf(const std::vector<std::size_t>& closed) {
     ShellFacets facets{{mesh().vertices, {}}, {}};
     for (std::uint32_t shell = 0; shell < closed.size(); ++shell)
@@ -526,8 +527,8 @@ class Repairer {
       if (!patches_[i].is_closed && mean[i] < 0.5 - kClearly - 0.25) flip(patches_[i]);
   }
 
-  /// Result of the first hit of a ray: 1 (outside) for nothing or a front, -1 (inside) for a back, 0 for its
-  /// own patch.
+  /// Result of the first hit of a ray: 1 (outside) for nothing or a front, -1 (inside) for a back, 0 for the
+  /// ray's own patch.
   int sideSeen(const MeshDistance& all, const Facet& from, const Vec3& way, std::uint32_t own,
                double size_m) {
     Vec3 p = from.center + 1e-3 * std::sqrt(from.area_m2) * way;
@@ -596,8 +597,9 @@ class Repairer {
     for (const std::uint32_t t : patch.triangles) is_kept_[t] = keep;
   }
 
-  /// Keeps one of several copies of a patch of the surface that are cut into different facets. Together they
-  /// look like sheets, since the winding number falls by two there; alone the first copy does not.
+  /// Keeps one of several copies of a patch of the surface that are cut into different facets. Together the
+  /// copies look like sheets, since the winding number falls by two across them; the first copy alone does
+  /// not look like a sheet.
   void keepOneOfCopies(const std::vector<std::size_t>& aside) {
     std::vector<std::uint32_t> bounding;
     for (std::uint32_t i = 0; i < is_kept_.size(); ++i)

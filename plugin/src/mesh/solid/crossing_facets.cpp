@@ -39,7 +39,7 @@ bool meetInPlane(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen
   const double c_side = cross2(b - a, c - a), d_side = cross2(b - a, d - a);
   const double a_side = cross2(d - c, a - c), b_side = cross2(d - c, b - c);
   return c_side * d_side <= 0 && a_side * b_side <= 0 &&
-         // Parallel segments: apart along their line?
+         // Parallel segments: are they apart along their line?
          (c_side != 0 || d_side != 0 ||
           (std::min(a.x(), b.x()) <= std::max(c.x(), d.x()) &&
            std::min(c.x(), d.x()) <= std::max(a.x(), b.x()) &&
@@ -91,7 +91,8 @@ class Crossings {
     for (const std::uint32_t v : mesh_.triangles[own]) box.add(mesh_.vertices[v]);
     const bool is_complete = all_.overlapping(box, kMostNear, near);
     for (const std::uint32_t other : near) {
-      // Each pair is tested once; triangles from number `count` on are tested only as the other of a pair.
+      // Each pair is tested once; triangles from number `count` on are tested only as the second triangle of
+      // a pair.
       if (other == own || (other < found_.size() && other < own) || !doMeet(own, other)) continue;
       found_[own].store(Crossed::Yes, std::memory_order_relaxed);
       if (other < found_.size()) found_[other].store(Crossed::Yes, std::memory_order_relaxed);

@@ -99,7 +99,7 @@ std::vector<float> sureDistances(const MeshDistance& surface, const Interior& in
   tbb::parallel_for(std::size_t{0}, sure_m.size(), [&](std::size_t i) {
     if (is_regular[i] == 0 || crossed[i] != Crossed::No) return;
     const auto triangle = static_cast<std::uint32_t>(i);
-    // Rounded down, because the conversion to float may round up.
+    // The distance is rounded down, because the conversion to float may round up.
     sure_m[i] = static_cast<float>(
         (1 - 1e-6) * sureDistance(mesh, triangle, surface.featureNormal(triangle, 0), interior, size_m));
   });

@@ -399,7 +399,7 @@ class Arranger {
     }
     return has_changed;
   }
-  /// The boxes of a tree that overlap `box`, in ascending order. Counts them as work.
+  /// The boxes of a tree that overlap `box`, in ascending order. Counts these boxes as work.
   void findOverlaps(const BoxTree& tree, const std::vector<Box>& boxes, const Box& box,
                     std::vector<std::uint32_t>& found) {
     found.clear();

@@ -25,11 +25,11 @@ bool mayTouch(const Mesh& mesh, std::uint32_t f, std::uint32_t g, double touch_m
 
 /// Cuts the facets of each of the given pairs along their intersection. Features nearer to each other than
 /// touch_m become one: vertices are merged, vertices near an edge or a facet become part of it, edges that
-/// nearly meet get a common point. Facets that lie on each other are both cut along each other's edges. As
-/// in: OpenCASCADE, Boolean operations, General Fuse (vertices first, then edges, then faces). Returns
-/// nothing if some facet cannot be triangulated or if work_left falls below 0. Each test for nearness within
-/// facets subtracts 1 from work_left and takes about a microsecond. O(pairs) and, in each facet, O(n log n)
-/// for points and segments with few others near.
+/// nearly meet get a common point. Facets that lie on each other are both cut along each other's edges.
+/// Method as in: OpenCASCADE, Boolean operations, General Fuse (vertices first, then edges, then faces).
+/// Returns nothing if some facet cannot be triangulated or if work_left falls below 0. Each test for nearness
+/// within facets subtracts 1 from work_left and takes about a microsecond. O(pairs) and, in each facet, O(n
+/// log n) for points and segments with few others near.
 std::optional<Arrangement> arrange(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> pairs,
                                    double touch_m, std::int64_t& work_left);
 
@@ -42,9 +42,9 @@ struct CutFacet {
 
 /// The constrained Delaunay triangulation of a facet, with the facet's orientation: the segments are edges of
 /// it. Points are placed by their barycentric weights, rounded to 2^-40; points of sides are then exactly on
-/// the sides. Points must be farther than that from each other, and from sides and segments on which they do
-/// not lie. Returns nothing if they are nearer, or if segments cross. O(n^2) at worst. Sources: Lawson 1977;
-/// Sloan, A fast algorithm for generating constrained Delaunay triangulations, 1993.
+/// the sides. Points must be farther than this rounding from each other, and from sides and segments on which
+/// they do not lie. Returns nothing if points are nearer, or if segments cross. O(n^2) at worst. Sources:
+/// Lawson 1977; Sloan, A fast algorithm for generating constrained Delaunay triangulations, 1993.
 std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulate(const CutFacet& facet,
                                                                      std::span<const Vec3> points);
 

@@ -230,7 +230,7 @@ class Triangulation {
     std::vector<Edge> open;
     for (const auto& [edge, c] : third_)
       if (edge.first < edge.second) open.push_back(edge);
-    // The number of turns is limited, because rounding might turn an edge back and forth.
+    // The number of flips is limited, because rounding might turn an edge back and forth.
     for (std::size_t left_to_do = 64 * third_.size(); !open.empty() && left_to_do > 0; --left_to_do) {
       const Edge e = open.back();
       open.pop_back();

@@ -24,9 +24,9 @@ class ShellNesting {
   ShellNesting& operator=(const ShellNesting&) = delete;
 
   /// True if no point of shell `inner` is outside of shell `outer` by more than twice touchDistance(), and
-  /// some point is inside by more than that. So `inner` may touch `outer` from within but not reach through
-  /// its surface, and a copy of all or part of `outer` does not lie within it. If facets cannot be cut, their
-  /// corners and middles decide. One winding number for each patch.
+  /// some point is inside by more than this distance. So `inner` may touch `outer` from within but not reach
+  /// through its surface, and a copy of all or part of `outer` does not lie within it. If facets cannot be
+  /// cut, their corners and middles decide. One winding number for each patch.
   [[nodiscard]] bool liesWithin(std::uint32_t inner, std::uint32_t outer);
 
  private:

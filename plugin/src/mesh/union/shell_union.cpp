@@ -96,7 +96,7 @@ class Shells {
  private:
   static constexpr double kClusterError = 1e-4;
   /// Distance from a facet at which the winding number is evaluated, in touch_m_. Flush facets are at most 2
-  /// away.
+  /// touch_m_ away.
   static constexpr double kBeside = 8;
 
   static bool isKept(const Flush& flush, double w) {
@@ -288,7 +288,7 @@ ShellUnion uniteWithin(const Mesh& mesh, const std::vector<std::uint32_t>& shell
   ShellUnion out;
   const std::vector<FacetPair> pairs = nearPairs(mesh, shell_of, touch_m);
   if (pairs.empty()) return out;
-  out.united_shells = 2;  // at least, if the rest fails
+  out.united_shells = 2;  // at least two, if the rest of the union fails
   if (pairs.size() > kMostPairs) work_left = -1;
   if (work_left < 0) return out;
   const std::optional<Arrangement> cut = arrange(mesh, pairs, touch_m, work_left);

@@ -20,8 +20,8 @@ Turn turnBetween(const Vec3& a, const Vec3& b) {
 
 bool isSmoothEdge(const Vec3& normal0, const Vec3& normal1, bool is_one_curved, double width_m) {
   const Turn turn = turnBetween(normal0, normal1);
-  // An arc that turns by this angle, and whose chord has this width, rises above the chord by width times
-  // angle / 8.
+  // An arc that turns by the angle between the normals, and whose chord is width_m, rises above the chord by
+  // width times angle / 8.
   const double rise_m = width_m * normal0.cross(normal1).norm() / 8;
   return turn == Turn::Flat || (turn == Turn::Slight && is_one_curved && rise_m < 0.5 * kSamePlace_m);
 }
@@ -38,7 +38,8 @@ std::vector<std::uint8_t> findCurvedFacets(std::span<const HalfEdge> edges, std:
     if (turn == Turn::Slight) slight.push_back({same[0].triangle, same[1].triangle});
   });
   constexpr std::uint32_t kNone = ~0U;
-  std::vector<std::uint32_t> neighbour(normals.size(), kNone);  // of a plane, by its first triangle
+  // Neighbour of a plane, by the plane's first triangle.
+  std::vector<std::uint32_t> neighbour(normals.size(), kNone);
   std::vector<std::uint8_t> has_two(normals.size(), 0), is_curved(normals.size(), 0);
   const auto addNeighbour = [&](std::uint32_t plane, std::uint32_t other) {
     if (neighbour[plane] == kNone) neighbour[plane] = other;

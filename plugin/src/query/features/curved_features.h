@@ -37,8 +37,8 @@ void forEachJoint(std::vector<EdgeEnd>& ends, Visit visit) {
 }
 
 /// Facets that meet at less than 8 degrees belong to one curved surface if one of them also has such a
-/// neighbour on another side. If neither has, the edge is a lone kink between two planes. Triangles in one
-/// plane count as one facet. O(n) after the edges are sorted.
+/// neighbour on another side. If neither facet has another such neighbour, the edge is a lone kink between
+/// two planes. Triangles in one plane count as one facet. O(n) after the edges are sorted.
 /// @param edges    sortedHalfEdges()
 /// @param normals  one for each triangle, unit; zero for triangles without area
 /// @return for each triangle whether it approximates a curved surface

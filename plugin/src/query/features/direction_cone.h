@@ -60,8 +60,8 @@ inline bool areOpposite(const DirectionCone& a, const Vec3& axis, const Directio
 }
 
 /// True if a corner's surface rises from a plane with normal n all around, or falls from it by no more than
-/// the slope. Only then can the corner touch a facet of another part in that plane: a nut's crest cannot
-/// touch the flank from which it faces away. Slopes down to kSinTouch are allowed, since facets only
+/// the slope. Only such a corner can touch a facet of another part in the plane with normal n: a nut's crest
+/// cannot touch the flank from which it faces away. Slopes down to kSinTouch are allowed, since facets only
 /// approximate curved surfaces.
 /// @param rays  from the corner along its surface, unit; in the normal's frame
 inline bool risesFrom(std::span<const Vec3> rays, const Vec3& n, double slope) {

@@ -92,7 +92,7 @@ FeatureContact contactOf(Kind kind, const std::uint32_t (&feature)[2], const Fea
   return contact;
 }
 
-// A contact whose points are those of features that were moved by a share of their way.
+// A contact whose points are those of features that were moved by a share of their displacement.
 FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Features& f,
                          const Approach& reach) {
   FeatureContact contact = contactOf(kind, feature, f);
@@ -104,7 +104,7 @@ FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Fea
 }
 
 // Decides which feature has the contact, for features that come within the rest gap after a share of their
-// way.
+// displacement.
 BorderOwner ownerOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
                     const Features& f, const Approach& reach, const Mat3& R_10) {
   const auto [p, q] = std::pair(reach.nearest.p, reach.nearest.q);
@@ -123,9 +123,9 @@ BorderOwner ownerOf(const FeatureSet& part0, const FeatureSet& part1, const Feat
   return ownerAtBorder(part0, contact.feature[0], contact.p[0], corner, kTolerated_m);
 }
 
-// True if two edges are nearest at a corner that has a contact of its own. A corner in a valley has none:
-// inside a ring, at the joint of two of its sections, an edge of another ring slides from one section to the
-// next.
+// True if two edges are nearest at a corner that has a contact of its own. A corner in a valley has no
+// contact: inside a ring, at the joint of two of its sections, an edge of another ring slides from one
+// section to the next.
 // @param n_1, n_0  from part 1 to part 0, in each part's frame
 bool isLeftToCorner(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
                     const Nearest& nearest, const Vec3& n_0, const Vec3& n_1) {
@@ -184,7 +184,7 @@ bool findCrossing(const FeatureSet& part0, const FeatureSet& part1, const std::u
     return isMetFromOutside(part0, Kind::EdgeOnEdge, 0, feature[0], contact.p[0], n_0) &&
            isMetFromOutside(part1, Kind::EdgeOnEdge, 1, feature[1], contact.p[1], contact.n);
   };
-  // Beside an end of an edge, the direction to it does not tell on which side of the other edge it is.
+  // Near an end of an edge, the direction to this end does not tell on which side of the other edge it is.
   if (!areMetFromOutside()) contact.n = -contact.n;
   return contact.n.dot(end_10 * contact.p[0] - contact.p[1]) < 0 && areMetFromOutside() &&
          !isLeftToPoints(part0, part1, contact, end_10.R, contact.n);

@@ -12,9 +12,9 @@
 
 namespace vps {
 
-/// The contact of two features that were moved by a share of their way. The features touch along the line
-/// between their nearest points or, near an edge, in the plane of the face onto which they slide. Returns
-/// false if other features touch there first, or if pointshells handle this contact.
+/// The contact of two features that were moved by a share of their displacement. The features touch along the
+/// line between their nearest points or, near an edge, in the plane of the face onto which they slide.
+/// Returns false if other features touch there first, or if pointshells handle this contact.
 bool findContact(const FeatureSet& part0, const FeatureSet& part1, FeatureContact::Kind kind,
                  const std::uint32_t (&feature)[2], const Features& f, const Approach& reach,
                  const Mat3& R_10, FeatureContact& contact);
@@ -30,8 +30,8 @@ double distanceAt(const FeatureSet& part0, const FeatureSet& part1, const Featur
                   const Pose& X_01);
 
 /// The feature that a corner touches when it passes the edge between two faces within the rest gap. The
-/// direction between corner and edge does not tell: a corner that slides flush over an edge would be stopped
-/// by it.
+/// direction between corner and edge does not tell which feature is touched: a corner that slides flush over
+/// an edge would be stopped by it.
 enum class BorderOwner {
   Facet,      ///< the corner passes the neighbour's plane above the facet, and is then over the facet
   Neighbour,  ///< the corner passes the facet's plane above the neighbour, and is then over the neighbour
@@ -46,15 +46,16 @@ struct PassingCorner {
   Mat3 R;                      ///< rotation from the frame of the corner's part to that of the facet's part
 };
 
-/// Decides which feature of `part` the corner touches. A neighbour that the corner's own surface keeps it
-/// from touching is left out.
+/// Decides which feature of `part` the corner touches. A neighbour is left out if the corner's own surface
+/// keeps the corner from touching it.
 /// @param q  the facet's nearest point, in the part's frame
 /// @param tolerated_m  how far below the face the corner may pass the other face's plane
 BorderOwner ownerAtBorder(const FeatureSet& part, std::uint32_t facet, const Vec3& q,
                           const PassingCorner& corner, double tolerated_m);
 
 /// True for features of curved surfaces that lie flush in each other, as a thread in its nut. Pointshells
-/// find these contacts, with the normals of the curved surfaces, so that the surfaces slide smoothly.
+/// find the contacts of such features, with the normals of the curved surfaces, so that the surfaces slide
+/// smoothly.
 /// @param R_10  rotation from the frame of part 0 to that of part 1
 /// @param n_1  direction between the features, unit, in the frame of part 1
 bool isLeftToPoints(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,

@@ -33,8 +33,8 @@ double FeatureMotion::rest_m(const FeatureSet& part0, const FeatureSet& part1) {
 
 namespace {
 
-// The distance at the start. For a contact in a face's plane it is the height above the plane, since a corner
-// may be far away and slide onto the face.
+// The distance at the start. For a contact in a face's plane the distance is the height above the plane,
+// since a corner may be far away and slide onto the face.
 double startOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
                double distance_m, const Pose& start) {
   if (contact.kind == Kind::EdgeOnEdge) return distance_m;
@@ -112,9 +112,9 @@ bool isBetweenEnds(const Nearest& at) {
 }
 
 // True if two edges meet at the place where their lines cross within a range of shares: between their ends,
-// or within rounding of an end. The latter is needed where two edges of one part meet in a corner, since each
-// of the two may miss the other part's edge by rounding. The place is then moved back to where both edges are
-// nearest between their ends, because the direction from an end still leans.
+// or within rounding of an end. The tolerance at the ends is needed where two edges of one part meet in a
+// corner, since each of the two may miss the other part's edge by rounding. The place is then moved back to
+// where both edges are nearest between their ends, because the direction from an end is still oblique.
 bool doMeet(const Features& f, double last, Approach& reach) {
   const double before_m = lineGap_m(f, reach.share);
   if (before_m == 0 || before_m * lineGap_m(f, last) > 0) return false;
@@ -165,7 +165,7 @@ bool findCrossingOf(const FeatureSet& part0, const FeatureSet& part1, const std:
 }
 
 // Curvature of the curve that an edge approximates, 0 for a straight edge: a chord of length l leaves the
-// curve by l^2 / 8 times this.
+// curve by l^2 / 8 times the curvature.
 double curvature_per_m(const FeatureSet& part, const FeatureEdge& edge) {
   if (!edge.is_curved) return 0;
   const double sagitta_m = std::max(part.sagitta_m(edge.from), part.sagitta_m(edge.to));
@@ -173,8 +173,8 @@ double curvature_per_m(const FeatureSet& part, const FeatureEdge& edge) {
 }
 
 // Upper bound of the distance from the place where edges cross at the end to the place at which a contact
-// held them. A row of the solver holds two straight lines on a straight way, so it is off by the bend of the
-// way, and by the bend of curved edges along the slide.
+// held them. A row of the solver holds two straight lines on a straight path, so its error is the bend of the
+// path, and by the bend of curved edges along the slide.
 double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
                 const MotionBetweenPoses& way, const FeatureContact& contact) {
   const double slide_m = std::max((start.inverse() * contact.p[0] - end.inverse() * contact.p[0]).norm(),
@@ -184,10 +184,10 @@ double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& st
   return 0.5 * travel_m(part0, part1, start, end) * way.turn_rad() + 0.5 * curvature * slide_m * slide_m;
 }
 
-// True if edges cross at the end of the step, but not at its start, and come nearer than the way and the
-// edges bend. An edge that slides past the end of another may dip below it on a way that bends, although its
-// contact holds it at the end. It then enters the next edge from that end, deeper than features are searched.
-// Along a fine rim it passes several such ends in a step.
+// True if edges cross at the end of the step, but not at its start, and come nearer than the bend of the path
+// and of the edges. An edge that slides past the end of another may dip below this edge on a curved path,
+// although its contact holds it at the end. The sliding edge then enters the next edge from that end, deeper
+// than features are searched. Along a fine rim an edge passes several such ends in a step.
 bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
                       const Pose& start, const Pose& end, Met& met, FeatureContact& contact) {
   FeatureContact before;
@@ -221,7 +221,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   const double gap_m = rest_m(part0, part1);
   const std::size_t first = out.size();
   Pose from = start;
-  // Stops at more contacts than a solver adds at once.
+  // The loop stops at more contacts than a solver adds at once.
   for (int k = 0; k < stretches && out.size() < first + 32 * kMostAdded; ++k) {
     const bool is_last = k + 1 == stretches;
     const Pose to = is_last ? end : way.at((k + 1.0) / stretches).inverse();

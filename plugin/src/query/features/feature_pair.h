@@ -32,7 +32,7 @@ int pointsOf(const FeatureSet& part, FeatureContact::Kind kind, int i, std::uint
 
 /// Points of a feature of part 0 and of part 1, in the frame of part 1. The points of part 0 move.
 struct Features {
-  Vec3 own[3];  ///< of part 0, in its own frame
+  Vec3 own[3];  ///< points of part 0, in its own frame
   Vec3 a[3], way[3], b[3];
   int a_count = 0, b_count = 0;
 

@@ -129,7 +129,7 @@ void FeatureSet::markCurvedEdges(std::size_t first) {
       edge.is_curved = true;
       length_m = std::max(length_m, (vertices_[edge.to] - vertices_[edge.from]).norm());
     }
-    // The sagitta of an arc that turns by this angle over the length is length times angle / 8.
+    // The sagitta of an arc that turns by an angle over a length is length times angle / 8.
     sagitta_m_[a.vertex] = static_cast<float>(length_m * sine / 8);
   });
 }

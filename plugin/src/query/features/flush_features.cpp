@@ -24,7 +24,7 @@ struct CornerAndFacet {
   std::uint32_t corner;
   const FeatureSet& with_facet;
   std::uint32_t facet;
-  Mat3 R;  ///< from the frame of the corner's part to the facet's
+  Mat3 R;  ///< rotation from the frame of the corner's part to that of the facet's part
 };
 
 /// @param kind  not EdgeOnEdge
@@ -62,9 +62,9 @@ bool isFlush(const FeatureEdge& edge0, const FeatureEdge& edge1, const Mat3& R_1
 }
 
 // True if a corner slides over the border of a facet from a curved neighbour on which it lies flush, as a
-// thread's crest does where it leaves its nut. There the polygons overlap by as much as they deviate from
-// their curves. The test allows twice that, since at the end of a border that meets another edge no curve is
-// known.
+// thread's crest does where it leaves its nut. At such a border the polygons overlap by as much as they
+// deviate from their curves. The test allows twice this overlap, since at the end of a border that meets
+// another edge no curve is known.
 // @param p  the nearest point of the facet, in its part's frame
 bool slidesOverBorder(const CornerAndFacet& pair, const Vec3& p) {
   const double own_m = pair.with_corner.sagitta_m(pair.with_corner.corners()[pair.corner]);

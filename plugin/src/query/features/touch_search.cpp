@@ -15,7 +15,7 @@ namespace {
 
 const double kFlush_rad = std::acos(kCosSameFace);
 
-/// The straight way of a point, in the frame of the facets.
+/// The straight path of a point, in the frame of the facets.
 struct Track {
   Vec3 from, to;
 
@@ -25,7 +25,7 @@ struct Track {
 /// A node of the corners, in the frame of the facets.
 struct Placed {
   Track center;
-  Vec3 half;  ///< of a box around the corners at each point of the track
+  Vec3 half;  ///< half size of a box around the corners at each point of the track
   Vec3 touch, faces[2];
 
   // A lower bound of the squared distance from a box during the motion; exact for a place that does not move.

@@ -19,12 +19,12 @@ struct FacetTree {
   struct Bounds {
     Box box;
     DirectionCone normals;
-    double low_m = 0, high_m = 0;  ///< of the corners along the cone's axis
+    double low_m = 0, high_m = 0;  ///< range of the corners along the cone's axis
     double spread_m = 0;           ///< size of a box around the facets' centres; 0 for a single facet
     bool is_curved = true;         ///< all facets approximate curved surfaces
   };
   Hierarchy tree;              ///< a leaf has one facet
-  std::vector<Bounds> bounds;  ///< of the nodes
+  std::vector<Bounds> bounds;  ///< the bounds of the nodes
 
   void build(const FeatureSet& part);
 };
@@ -32,12 +32,12 @@ struct FacetTree {
 /// A tree of corners with bounds of their places and of the planes that they can touch.
 struct CornerTree {
   struct Bounds {
-    Vec3 center, half;  ///< of a box around their places
+    Vec3 center, half;  ///< centre and half size of a box around the corners
     double radius_m = 0;
     DirectionCone touch;
-    DirectionCone faces[2];  ///< each corner has a face with its normal in each
+    DirectionCone faces[2];  ///< each corner has a face with its normal in each of the two cones
   };
-  Hierarchy tree;  ///< a leaf has one corner; without the corners that can touch nothing
+  Hierarchy tree;  ///< a leaf has one corner; corners that can touch nothing are left out
   std::vector<Bounds> bounds;
 
   void build(const FeatureSet& part);
@@ -50,7 +50,7 @@ struct TouchPair {
 
 /// Lists pairs of a corner of one part and a facet of another that can touch while the parts turn by less
 /// than slack_rad, and of which the corner comes nearer than margin_m to the facet. The list also contains
-/// some pairs of which the corner comes that near only to the facet's box and to its plane. The order is
+/// some pairs of which the corner comes nearer than margin_m only to the facet's box and plane. The order is
 /// fixed. Corners with faces that lie flush on a facet of a curved surface are left out. Clears `found`.
 /// Cost: about 50 ns for each pair of nodes that is tested; features of a thread in its nut are left out by
 /// hundreds at once. Source: spatialised normal cones (Johnson and Cohen 2001).

@@ -119,7 +119,8 @@ Faces facesAt(const FeatureSet& part, std::uint32_t corner) {
   return {{coneOver(groups[0]), coneOver(groups[1])}};
 }
 
-// Cones over the faces of several corners, of which each corner's two are taken in the more similar order.
+// Cones over the faces of several corners, of which each corner's two faces are taken in the more similar
+// order.
 Faces facesOver(const std::vector<Faces>& all) {
   std::vector<DirectionCone> cones[2];
   for (const Faces& f : all) {

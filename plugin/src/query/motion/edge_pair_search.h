@@ -21,8 +21,8 @@ struct Sweep {
 class EdgePairSearch {
  public:
   /// @param reach_m  distance below which edges count as near
-  /// @param least_sine  pairs whose directions differ by less than this at every pose are left out; 0: none
-  /// is
+  /// @param least_sine  pairs whose directions differ by less than this at every pose are left out; 0: no
+  /// pair is left out
   EdgePairSearch(const EdgeTree& edges0, const EdgeTree& edges1, const Sweep& X_01, double turn_rad,
                  double reach_m, double least_sine = 0)
       : edges0_(edges0),
@@ -51,7 +51,7 @@ class EdgePairSearch {
     double way2_m2;
     // The members below are computed when first needed, since most nodes are far away.
     bool has_line = false;
-    Vec3 from, to;  ///< of the line, at the start
+    Vec3 from, to;  ///< ends of the line, at the start
     double reach_m =
         0;  ///< greatest distance of an edge from the line during the motion, plus the search's reach
   };

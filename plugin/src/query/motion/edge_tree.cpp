@@ -30,7 +30,8 @@ EdgeTree::EdgeTree(std::vector<Line> lines) : lines_(std::move(lines)) {
   }
 }
 
-// The bounds of some edges: a sphere, the mean direction, and the line along it that the edges are near to.
+// The bounds of some edges: a sphere, the mean direction, and the line along this direction that the edges
+// are near to.
 EdgeTree::Node EdgeTree::nodeOf(std::span<const std::uint32_t> own) const {
   Node node;
   const auto along = [&](std::uint32_t i) { return Vec3((lines_[i].to - lines_[i].from).normalized()); };

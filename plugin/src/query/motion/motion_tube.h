@@ -18,7 +18,7 @@ class MotionTube {
 
   /// Expects the motion from `start` to `end` to continue with the same twist for a few steps. Poses of part
   /// 1 in part 0.
-  /// @param width  width of the margin, relative to the narrowest; see nextWidth()
+  /// @param width  width of the margin, relative to the narrowest margin; see nextWidth()
   MotionTube(const Ball& ball0, const Ball& ball1, const Pose& start, const Pose& end, double width = 1)
       : ball0_(ball0), ball1_(ball1), width_(width) {
     // Assumed, by measurement on threads, gears and a heap: with a wider margin the list lasts longer, but
@@ -42,9 +42,9 @@ class MotionTube {
     bend_m_ = bendOf(travel_m(ball0, ball1, start, to), way_.turn_rad());
   }
 
-  /// As the constructor, but expects the parts to continue as they moved from their last pose, if that tube
-  /// holds `end` as well. The motion of a step that is not solved yet includes gravity and other loads that
-  /// contacts will take.
+  /// As the constructor, but expects the parts to continue as they moved from their last pose, if the
+  /// resulting tube holds `end` as well. The motion of a step that is not solved yet includes gravity and
+  /// other loads that contacts will take.
   static MotionTube following(const Ball& ball0, const Ball& ball1, const Pose& last, const Pose& start,
                               const Pose& end, double width) {
     const Pose onward = start * (last.inverse() * start);
@@ -89,10 +89,10 @@ class MotionTube {
   // Assumed, by measurement: a search takes as long as some thousand pairs.
   static constexpr std::size_t kFewPairs = 128, kManyPairs = 512;
   static constexpr double kWidest = 8;
-  // How far a point leaves the straight line from its first to its last place, on a way of this length and
-  // turn: an eighth of its second derivative. For a point of the smaller part, which turns about its centre
-  // c, the derivative is turn^2 radius. For a point q of the larger part, seen from the smaller one, R'(q -
-  // c) has at most turn^2 |q - c| + 2 turn |c'|, and q is near the smaller part.
+  // How far a point leaves the straight line from its first to its last place, on a path of length way_m and
+  // rotation turn_rad: an eighth of its second derivative. For a point of the smaller part, which turns about
+  // its centre c, the derivative is turn^2 radius. For a point q of the larger part, seen from the smaller
+  // one, R'(q - c) has at most turn^2 |q - c| + 2 turn |c'|, and q is near the smaller part.
   [[nodiscard]] double bendOf(double way_m, double turn_rad) const {
     const double radius_m = std::min(ball0_.radius_m, ball1_.radius_m);
     const double center_way_m = way_m - turn_rad * radius_m;  // see travel_m()

@@ -90,7 +90,7 @@ class MotionBetweenPoses {
   }
 
   bool is_first_ = true;
-  Pose from_, to_;  // of the smaller part in the other part
+  Pose from_, to_;  // poses of the smaller part in the other part
   Vec3 turn_ = Vec3::Zero(), center_ = Vec3::Zero();
   double radius_m_ = 0;
 };

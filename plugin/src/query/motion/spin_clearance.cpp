@@ -55,8 +55,7 @@ std::vector<Box> sweptAbout(const FeatureSet& part, const Vec3& p, const Vec3& a
   return swept;
 }
 
-// True if boxes of both parts come nearer than this, in radius and in height. The tree is of the second
-// boxes.
+// True if boxes of both parts come nearer than distance_m, in radius and in height. The tree holds `others`.
 bool comeNear(const std::vector<Box>& boxes, const std::vector<Box>& others, const BoxTree& tree,
               double distance_m) {
   return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {

@@ -34,8 +34,8 @@ class CoherentWalk {
         reader_(reading, Reader{this, consume}) {}
 
   /// Call before the first group of a pose. If the last cutoff was smaller, its thresholds are too late by at
-  /// most the difference of the cutoffs, which is added to the odometers. If it was larger, they are too
-  /// early, which only costs readings.
+  /// most the difference of the cutoffs, which is added to the odometers. If the last cutoff was larger, the
+  /// thresholds are too early, which only costs readings.
   static void begin(QueryMemory& memory, const MapReading& reading, double cutoff,
                     const Pose& X_MP) noexcept {
     const double last = std::exchange(memory.cutoff_, cutoff);
@@ -254,7 +254,8 @@ double readNearLeaves(const MapReading& reading, const Pose& X_MP, const QueryOp
 inline void setDistance(const VoxMap& map, const MapReading& reading, float least_read, double least_skipped,
                         QueryResult& result) noexcept {
   const double read_m = reading.field.quantum_m * least_read;
-  // If nothing was skipped both are infinite; min() because saturated bounds were rounded to floats.
+  // If nothing was skipped, the bound stays infinite; min() is needed because saturated bounds were rounded
+  // to floats.
   const double skipped_m = std::isfinite(least_skipped)
                                ? std::min(map.band_m(), reading.field.voxel_m * least_skipped)
                                : least_skipped;

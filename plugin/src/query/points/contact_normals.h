@@ -8,8 +8,8 @@
 namespace vps {
 
 /// The reading of a lane [quanta] at its exact position: extrapolated along the trilinear slope from the step
-/// to which the point was rounded. Otherwise a stiff contact would show the steps of 1/16384 voxel (15 nm at
-/// 0.25 mm).
+/// to which the point was rounded. Without this extrapolation a stiff contact would show the steps of 1/16384
+/// voxel (15 nm at 0.25 mm).
 /// @param p_P  position of the lane's point
 double readingAt(const ReadLeaf& leaf, int lane, const GridPose& motion, const Vec3& p_P) noexcept;
 

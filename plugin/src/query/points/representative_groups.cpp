@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kEdgeShare = 0.25;  // share of a tile's size; assumed
 // Share of the spread of a tile's points. The share bounds the bend in directions in which the points do not
-// spread. The recorded peg depends on it (Replay.TheCommittedRecordingRunsAgainBitForBit).
+// spread. The recorded motion of a peg depends on this share
+// (Replay.TheCommittedRecordingRunsAgainBitForBit).
 constexpr double kRidge = 1e-3;
 
 }  // namespace

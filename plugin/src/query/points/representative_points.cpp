@@ -203,8 +203,8 @@ void RepresentativePoints::mergeTo(const Level& level) noexcept {
   }
 }
 
-// Adds the nearest points of the groups or, if there are too many groups, of the smallest cells that are few
-// enough.
+// Adds the nearest points of the groups or, if there are too many groups, of the smallest cells of which
+// there are few enough.
 void RepresentativePoints::merge(const Request& request) noexcept {
   if (request.most_groups > 0 && of_groups_.size() > request.most_groups)
     for (const Level& level : levels_) {

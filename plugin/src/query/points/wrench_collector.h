@@ -174,7 +174,7 @@ class WrenchCollector {
     Vec3 f = Vec3::Zero(), tau = Vec3::Zero();  ///< as in TouchSums
     double area_m2 = 0, area_depth = 0;
     std::size_t count = 0;
-  } totals_;  // over whole groups
+  } totals_;  // sums over whole groups
   float least_ = std::numeric_limits<float>::infinity();
 };
 

@@ -111,8 +111,8 @@ Simd widest() noexcept {
   return Simd::Scalar;
 }
 
-/// The faster of the two widest sets: on some processors AVX2 reads as fast as AVX-512 or faster, and all
-/// sets give the same bits. If memory is short, the wider set is taken.
+/// The faster of the two widest instruction sets: on some processors AVX2 reads as fast as AVX-512 or faster,
+/// and all sets give the same bits. If memory is short, the wider set is taken.
 Simd fastest(Simd widest_here) noexcept {
 #ifdef VPS_HAS_X86_KERNELS
   try {
@@ -124,8 +124,8 @@ Simd fastest(Simd widest_here) noexcept {
   return widest_here;
 }
 
-/// Determined when the program starts, so that the first query does not wait. The constructor of another
-/// global object that runs earlier reads zero, which is Best and leads to the scalar kernels.
+/// The value is determined when the program starts, so that the first query does not wait. The constructor of
+/// another global object that runs earlier reads zero, which is Best and leads to the scalar kernels.
 const Simd kWidest = widest();
 const Simd kFastest = fastest(kWidest);
 

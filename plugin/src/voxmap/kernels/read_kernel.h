@@ -22,7 +22,7 @@ struct FieldView {
   const std::uint32_t* bricks = nullptr;    ///< of each directory cell
   const float* centers_m = nullptr;         ///< of each directory cell, see VoxLayout
   const std::uint8_t* far_cells = nullptr;  ///< of each directory cell, see VoxLayout; may be null
-  std::int32_t size[3] = {0, 0, 0};         ///< of the directory, in cells
+  std::int32_t size[3] = {0, 0, 0};         ///< size of the directory, in cells
   alignas(32) double half[4] = {};          ///< the directory's middle, in voxels; and 0
   double low[3] = {0, 0, 0};                ///< the directory's corner from the map's origin, in voxels
   float box[2][3] = {};                     ///< of the surface, lowest and highest corner [voxels]
@@ -85,7 +85,7 @@ struct SphereBounds {
 };
 
 /// Sums over the touching points of up to sixteen leaves (a row), per lane. Floats are accurate enough for so
-/// few.
+/// few points.
 struct alignas(64) RowSums {
   float f[3][kLanes] = {};    ///< area times depth times normal [m^2 quanta]
   float tau[3][kLanes] = {};  ///< that force crossed with the arm from the reference [m^2 quanta steps]

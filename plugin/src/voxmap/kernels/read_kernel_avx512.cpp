@@ -19,7 +19,7 @@ inline Ints sumOfProducts(Ints pairs, Ints weights) {
   return (Ints)_mm512_madd_epi16((__m512i)pairs, (__m512i)weights);
 }
 
-// With a mask of all ones: gcc 12 warns of an undefined operand in the plain form.
+// The form with a mask of all ones is used, because gcc 12 warns of an undefined operand in the plain form.
 inline Floats squareRoots(Floats v) {
   return (Floats)_mm512_maskz_sqrt_ps(0xffff, (__m512)v);
 }
@@ -73,7 +73,7 @@ inline __m256i fourLanes(const std::int16_t* a, const std::int16_t* b, const std
 template <int kY, int kX, typename At>
 inline void fetchPairs(At at, Ints* pairs) {
   __m256i even[2][2], odd[2][2];  // pairs of lanes
-  // In halves, because the addresses of all lanes exceed the registers.
+  // Lanes are processed in halves, because the addresses of all lanes exceed the registers.
   for (int half = 0; half < 2; ++half) {
     const std::int16_t* p[8];
     for (int i = 0; i < 8; ++i) p[i] = at(8 * half + i);
