@@ -55,7 +55,7 @@ class Exchange {
  private:
   Inbox inbox_;
   DdsParticipant participant_;
-  DdsTopic out_, in_;  // after all members that threads of DDS use
+  DdsTopic out_, in_;  // declared after all members that threads of DDS use
 };
 
 class NetworkServer final : public ServerChannel {

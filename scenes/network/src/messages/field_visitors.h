@@ -23,7 +23,7 @@ namespace vps::scenes::wire {
 
 inline constexpr double kLargest = 1e12;  // limit of any number that a correct node sends
 inline constexpr double kRotationError =
-    1e-6;  // assumed: far above rounding, far below the threshold of touch
+    1e-6;  // limit of a rotation's error; assumed: far above rounding, far below the threshold of touch
 /// Limit of the bodies or contacts in a snapshot; further ones are left out.
 inline constexpr std::uint32_t kLongestList = 1024;
 
