@@ -18,7 +18,7 @@ namespace vps::scenes {
 VPS_SCENES_API AssembleResult assemble(Scene& scene, const AssembleOptions& options = {});
 
 struct TrySettings {
-  int tries = 10;        ///< at least 1
+  int tries = 10;        ///< number of seeds to run, at least 1
   unsigned threads = 0;  ///< number of tries that run at the same time; 0: one for each core
 };
 

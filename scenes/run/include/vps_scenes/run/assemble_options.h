@@ -16,8 +16,7 @@
 namespace vps::scenes {
 
 /// Asks a run for a Snapshot, as a window does. The run makes the snapshot on request at the end of a physics
-/// step. No other thread reads the run's state, and a run that is watched has the same bits as one that is
-/// not.
+/// step. No other thread reads the run's state, and a watched run gives the same bits as an unwatched run.
 struct SnapshotTap {
   std::atomic<bool> is_wanted{false};    ///< set by the watching thread, cleared by the run
   std::function<void(Snapshot&&)> give;  ///< called by the physics thread
@@ -30,23 +29,23 @@ struct AssembleOptions : ModelOptions {
   /// contacts. Affects only max_penetration_m and the fields that describe it.
   std::size_t judge_stride = 20;
   const std::atomic<bool>* stop =
-      nullptr;  ///< set it to end the run early; the reason in the result is then "stopped"
+      nullptr;  ///< set the flag to end the run early; the reason in the result is then "stopped"
   /// Runs the haptic loop on its own thread and physics on the caller's thread, both in real time, from the
   /// first step to the last. Other threads judge each step and cook the next field. A run in real time does
   /// not repeat bit for bit, but its recording replays bit for bit, because the recording holds the order in
   /// which the two threads exchanged state.
   bool is_real_time = false;
-  /// In real time, a run that cannot hold its physics rate sheds load (load_level.h), and restores it when it
-  /// can. False: the run only counts the periods that it missed. Lockstep never sheds load.
+  /// In real time, a run that cannot hold its physics rate sheds load (load_level.h), and restores the load
+  /// when the rate allows. False: the run only counts the periods that it missed. Lockstep never sheds load.
   bool degrades = true;
-  /// Called by the physics thread after each step, with the simulated time. May be empty.
+  /// Called by the physics thread after each step, with the simulated time; an empty function is not called.
   std::function<void(double time_s)> after_step;
-  SnapshotTap* tap = nullptr;  ///< may be null
-  /// Called by the physics thread with each fault, warning and notice of the loop and of a simulated arm. May
-  /// be empty.
+  SnapshotTap* tap = nullptr;  ///< receives the requested snapshots; null: nobody requests snapshots
+  /// Called by the physics thread with each fault, warning and notice of the loop and of a simulated arm; an
+  /// empty function is not called.
   std::function<void(const device::DeviceEvent&)> on_device_event;
   /// Handle pose that the window's cursor asks for, in a run with [device] kind = "mouse". Null: a run with
-  /// that kind is refused.
+  /// [device] kind = "mouse" is refused.
   std::shared_ptr<device::HandleWish> wish;
   /// Makes a device, moved by a person or a program, that replaces the one that the scene's [device] kind
   /// names. The run must be in real time. Empty: the scene's device is used.
@@ -57,8 +56,8 @@ struct AssembleOptions : ModelOptions {
   const std::atomic<bool>* snaps = nullptr;
   /// Requests to a run in real time, such as to release the part. Null: there are no requests.
   RunRequests* requests = nullptr;
-  /// Called after each step of the procedure with the result so far. The result's totals are not filled in
-  /// yet; its member `finished` holds the present poses of the parts. May be empty.
+  /// Called after each step of the procedure with the result so far; an empty function is not called. In this
+  /// result the totals are not filled in yet, and the member `finished` holds the present poses of the parts.
   std::function<void(const AssembleResult&)> on_step;
   /// The haptic loop computes the part's motion itself between physics steps (vps_device/local_contact.h),
   /// for physics slower than the loop. A run with local contact cannot be recorded. In real time the loop is
@@ -66,7 +65,8 @@ struct AssembleOptions : ModelOptions {
   bool has_local_contact = false;
 };
 
-/// Least time limit of a step in which a person moves the part. assumed: longer than a person tries
+/// Least time limit of a step in which a person moves the part. assumed: longer than a person tries to place
+/// one part
 inline constexpr double kPersonTimeout_s = 600;
 
 }  // namespace vps::scenes

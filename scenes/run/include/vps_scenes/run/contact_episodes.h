@@ -14,11 +14,11 @@ namespace vps::scenes {
 struct ContactEpisode {
   double start_s = 0, end_s = 0;
   int step = -1;
-  bool is_slide = false;  ///< the part moved more than kSlideTravel_m in contact; else it is an impact
+  bool is_slide = false;  ///< the part moved more than kSlideTravel_m in contact; false: an impact
 };
 
-/// Contacts separated by less than this belong to one episode: a part that chatters on a surface has hit it
-/// once. assumed: shorter than what a hand feels as two events (about 30 ms between taps).
+/// Contacts separated by less than this time belong to one episode: a part that chatters on a surface has hit
+/// the surface once. assumed: shorter than what a hand feels as two events (about 30 ms between taps).
 inline constexpr double kEpisodeBridge_s = 0.02;
 /// Least travel of a slide. assumed: well above the travel of a bounce.
 inline constexpr double kSlideTravel_m = 1e-3;

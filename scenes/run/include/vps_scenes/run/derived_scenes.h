@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenes made from a scene: its disassembly, what is left of it after some steps, and one part taken in hand
-// without a procedure. A run of them is judged, recorded and replayed like any other, and the same scene
-// gives the same bits.
+// Scenes derived from a scene: the disassembly, the remaining steps of its procedure, and one part taken in
+// hand without a procedure. A run of a derived scene is judged, recorded and replayed like any other run, and
+// the same scene gives the same bits.
 #pragma once
 
 #include <cstddef>
@@ -30,17 +30,18 @@ VPS_SCENES_API std::vector<Pose> laidOut(const Scene& scene);
 
 /// A scene whose only step takes the part `part` from where it lies. The step never ends by itself and judges
 /// nothing; its target is only shown. All other parts are fixed where they lie.
-/// @param X_WP  of each part
+/// @param X_WP  pose of each part
 VPS_SCENES_API Scene sceneOfOnePart(const Scene& scene, std::span<const Pose> X_WP, std::size_t part);
 
-/// The scene with all parts in place and its steps in reverse. Each step takes its part off, along its path
-/// from the target to the start, and puts it away there (SceneStep::takes_off); a screw is unscrewed first.
-/// Nothing guides a part at the end of its path, so the tolerance there is kAway_m, or a quarter of the
-/// path's length where that is less. The tolerance of the assembly does not apply. Throws LoadError for a
-/// scene without a step, for one that is a disassembly, and where no part is fixed.
+/// The scene with all parts in place and its steps in reverse. Each step takes its part off, along the part's
+/// path from the target to the start, and puts the part away at the start (SceneStep::takes_off); a screw is
+/// unscrewed first. Nothing guides a part at the end of its path, so the tolerance there is kAway_m, or a
+/// quarter of the path's length where that is less. The tolerance of the assembly does not apply. Throws
+/// LoadError for a scene without a step, for one that is a disassembly, and where no part is fixed.
 VPS_SCENES_API Scene disassemblyOf(Scene scene);
 
-/// Tolerance for a part that was put away. assumed: its place does not have to be more exact
+/// Tolerance for a part that was put away. assumed: the place of a part that was put away need not be more
+/// exact
 inline constexpr double kAway_m = 2e-3;
 
 }  // namespace vps::scenes

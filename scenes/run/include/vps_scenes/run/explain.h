@@ -13,13 +13,14 @@ namespace vps::scenes {
 /// Cost of one part's own models; 0 if the part has none or shares those of another part.
 struct PartCost {
   std::size_t map_bytes = 0, shell_bytes = 0, points = 0;
-  double map_wall_s = 0, shell_wall_s = 0;  ///< to build, or to read from the cache; 0 in an estimate
+  /// Wall time to build the model or to read it from the cache; 0 in an estimate.
+  double map_wall_s = 0, shell_wall_s = 0;
 };
 
 /// Cost of the fixed field of one step, without the models that it shares with its parts.
 struct StepCost {
   std::size_t bytes = 0, points = 0;
-  bool is_cooked = false;  ///< false: the field of the step before serves this one as well
+  bool is_cooked = false;  ///< false: the field of the previous step also serves this step
   double cook_wall_s = 0;
 };
 
@@ -37,11 +38,12 @@ struct ExplainedModels {
 };
 
 /// Builds the plan's models, and cooks each step's field with the parts of earlier steps at their targets.
-/// (In a run, those parts lie where contact left them.) Throws LoadError as assemble().
+/// (In a run, the parts of earlier steps lie where contact left them.) Throws LoadError as assemble().
 VPS_SCENES_API ExplainedModels explain(Scene scene, ModelPurpose purpose, const ModelOptions& options);
 
-/// As explain(), but estimated from areas and edges (vps/model_estimate.h): bytes and counts are rough, and
-/// times are not known. O(triangles), in parallel. Throws LoadError for a mesh that cannot be modelled.
+/// The results of explain(), estimated from areas and edges (vps/model_estimate.h): bytes and counts are
+/// rough, and times are not known. O(triangles), in parallel. Throws LoadError for a mesh that cannot be
+/// modelled.
 VPS_SCENES_API ExplainedModels estimate(const Scene& scene, ModelPurpose purpose,
                                         const ModelOptions& options);
 

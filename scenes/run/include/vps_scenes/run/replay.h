@@ -15,30 +15,31 @@
 
 namespace vps::scenes {
 
-/// Runs assemble() and records it to `file` (format: vps_device/recording.h), scene and meshes included, so
-/// that replay() runs it again from this file alone. A run that is stopped or fails leaves the unfinished
-/// recording next to it, and names it through options.warn. Throws as assemble(), LoadError where the file
-/// cannot be written, and LoadError for options.has_local_contact, whose runs cannot be replayed bit for bit.
+/// Runs assemble() and records the run to `file` (format: vps_device/recording.h), scene and meshes included,
+/// so that replay() repeats the run from this file alone. A run that is stopped or fails leaves the
+/// unfinished recording next to `file`, and reports its name through options.warn. Throws as assemble(),
+/// LoadError where the file cannot be written, and LoadError for options.has_local_contact, whose runs cannot
+/// be replayed bit for bit.
 VPS_SCENES_API AssembleResult assembleAndRecord(Scene& scene, const std::string& file,
                                                 const AssembleOptions& options = {});
 
 struct ReplayOptions : ModelOptions {
-  const std::atomic<bool>* stop = nullptr;  ///< as in AssembleOptions
-  SnapshotTap* tap = nullptr;               ///< as in AssembleOptions
-  /// As in AssembleOptions.
+  const std::atomic<bool>* stop = nullptr;  ///< see AssembleOptions::stop
+  SnapshotTap* tap = nullptr;               ///< see AssembleOptions::tap
+  /// See AssembleOptions::on_device_event.
   std::function<void(const device::DeviceEvent&)> on_device_event;
-  /// Called with the scene before its models are built. The reference stays valid until replay() returns. May
-  /// be empty.
+  /// Called with the scene before its models are built. The reference stays valid until replay() returns. An
+  /// empty function is not called.
   std::function<void(const Scene&)> on_scene;
 };
 
 struct ReplayResult {
-  Scene scene;  ///< as recorded
+  Scene scene;  ///< the recorded scene
   AssembleResult result;
   std::string
       departure;  ///< first difference; empty: all wrenches, events and traced poses are equal to the bit
   std::string other_version;  ///< "was recorded by ..., this is ..."; empty: recorded by this version
-  std::size_t equal = 0;      ///< entries that agree
+  std::size_t equal = 0;      ///< number of log entries that agree with the recording
 };
 
 /// The scene of a recorded run. Throws LoadError if the recording has no scene, such as the recording of a
@@ -46,8 +47,8 @@ struct ReplayResult {
 VPS_SCENES_API Scene recordedScene(const device::RecordedRun& run);
 
 /// Takes the device's samples from the recording, computes everything else again and compares the results
-/// with the recording. After a difference the run continues to its end. If the recording is cut, the run ends
-/// at the cut. Throws as recordedScene() and assemble().
+/// with the recording. After a difference the run continues to its end. If the recording is incomplete, the
+/// run ends where the recording ends. Throws as recordedScene() and assemble().
 VPS_SCENES_API ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options = {});
 
 }  // namespace vps::scenes

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The result of a run: the numbers of reports, plots and JSON. result_fields.h has a row for each of them.
+// The result of a run: the numbers of reports, plots and JSON. result_fields.h has a row for each of these
+// numbers.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +29,7 @@ struct TickTimes {
 
 /// One strategy that the virtual operator used while it inserted or pressed.
 struct StrategyUse {
-  std::string strategy;  ///< "tilt_in": vps_device/operator.h
+  std::string strategy;  ///< name of the strategy, such as "tilt_in" (vps_device/operator.h)
   double start_s = 0, duration_s = 0;
 };
 
@@ -43,8 +44,8 @@ struct StepResult {
   std::string stuck_against;  ///< the part that this part touched when the hand gave up; empty: none, or the
                               ///< hand did not give up
   Vec3 stuck_at_W = Vec3::Zero();
-  std::string stands_on;  ///< an earlier part that did not reach its target and was put there for this step;
-                          ///< empty: none
+  std::string stands_on;  ///< an earlier part that did not reach its target and was put at its target for
+                          ///< this step; empty: none
   /// A later part that fits into this part and moves it from where the hand left it to its target; empty:
   /// none, or the path to the target is not free.
   std::string aligned_by;
@@ -53,8 +54,9 @@ struct StepResult {
   std::string mesh_doubt;
   bool is_taken_off = false;  ///< the step took the part off, and its target is where it was put away
   bool completed = false;     ///< the part reached its target, whatever else is wrong
-  bool by_contact = false;    ///< completed, and other parts guided the part there: isGuided()
-  /// Greatest force across the last leg of the part's path while it was in hand: the force that guides it.
+  bool by_contact = false;    ///< completed, and other parts guided the part to its target: isGuided()
+  /// Greatest force across the last leg of the part's path while the part was in hand: the force that guides
+  /// the part.
   double guide_force_N = 0;
   std::string failure_reason;  ///< empty when completed
   double start_s = 0, duration_s = 0;
@@ -64,26 +66,26 @@ struct StepResult {
   double deepest_time_s = 0;
   double penetration_limit_m = 0;               ///< min(10 um, clearance / 4), see result_fields.h
   double field_penetration_m = 0;               ///< deepest penetration by the voxmap, for comparison
-  double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
+  double peak_force_N = 0, peak_torque_Nm = 0;  ///< greatest force and torque on the hand
   int impacts = 0, slides = 0;
   int index_count = 0;                  ///< number of times that the device was clutched and recentred
   std::vector<StrategyUse> strategies;  ///< in order of time; empty if a person moves the part
   double turns = 0;                     ///< turns of a screw the last time it was screwed on
-  double advance_per_turn_m = 0;        ///< travel along the axis in these turns, divided by their number
-  double lean_rad = 0;  ///< greatest angle between the screw's axis and that of its target during these turns
+  double advance_per_turn_m = 0;        ///< the screw's travel along its axis, divided by `turns`
+  double lean_rad = 0;  ///< greatest angle between the screw's axis and its target axis during `turns`
   /// Force that presses the part in, by Lame's formula for the declared interference; 0: check finds no press
   /// fit.
   double press_needed_N = 0;
   double hoist_N =
-      0;  ///< share of the part's weight that a hoist carries [N], since the hand may not; 0: no hoist
+      0;  ///< share of the part's weight [N] that a hoist carries since the hand cannot; 0: no hoist
   double tolerance_m = 0;    ///< tolerance of final_error_m, as stated or from the fit
   double final_error_m = 0;  ///< greatest distance of the part's surface from its place at the target
   double final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
-  double late_drift_m = 0;  ///< the same in the second half of that time, relative to the pose in the middle
+  double late_drift_m = 0;  ///< rest_drift_m from half of rest_s on, relative to the pose at that time
   double rest_s = 0;
   double cook_wall_s = 0;  ///< time to build the fixed field of the next step, on its own thread
-  double swap_wall_s = 0;  ///< time to put it in place, between two physics steps
+  double swap_wall_s = 0;  ///< time to put the next fixed field in place, between two physics steps
   std::uint64_t missed_while_cooking = 0;  ///< haptic periods missed during cooking, in real time
 };
 
@@ -138,17 +140,17 @@ struct TraceRow {
   int step = -1;
   int phase = 0;     ///< a TracePhase
   int strategy = 0;  ///< a device::OperatorStrategy
-  Wrench F_hand_W;   ///< on the hand
-  Pose X_WP;         ///< part in hand
+  Wrench F_hand_W;   ///< wrench on the hand
+  Pose X_WP;         ///< pose of the part in hand
   Pose X_W_Proxy;
   int contacts = 0;
-  double depth_m = 0;  ///< by the voxmap
+  double depth_m = 0;  ///< penetration depth by the voxmap
 };
 
 struct EnergyLedger {
   double to_hand_J = 0, from_hand_J = 0;
   double injected_J = 0;                  ///< energy that the loop generated, by the encoders' positions
-  double quantisation_error_bound_J = 0;  ///< of injected_J, by the encoders' resolution
+  double quantisation_error_bound_J = 0;  ///< error bound of injected_J, by the encoders' resolution
 };
 
 /// A part that turned in one physics step by more than the limit. Contacts between bodies that turn by more
@@ -156,14 +158,14 @@ struct EnergyLedger {
 /// less than its speed requires.
 struct FastTurn {
   std::string part;
-  bool is_in_contact = false;  ///< the rotation is relative to the part that it touches
+  bool is_in_contact = false;  ///< the part touches another part, and the rotation is relative to that part
   double w_rad_s = 0;          ///< angular velocity at which the part needs the highest physics rate
-  double turn_rad = 0;         ///< rotation at that speed in one step, or one substep (Fidelity::substeps)
+  double turn_rad = 0;         ///< rotation at w_rad_s in one step, or one substep (Fidelity::substeps)
   double limit_rad = 0;        ///< greatest rotation in one step that is simulated correctly
   double needed_hz =
       0;  ///< Fidelity::physics_rate_hz at which the rotation stays within the limit, without substeps
 };
-/// "'shaft' turns with 10000 rpm, ...", with the remedy.
+/// The fast turn in words, such as "'shaft' turns with 10000 rpm, ...", with the remedy.
 VPS_SCENES_API std::string inWords(const FastTurn& turn);
 
 /// One change of the load level (load_level.h).
@@ -171,16 +173,16 @@ struct LoadLevelChange {
   double time_s = 0;      ///< simulated
   int from = 0, to = 0;   ///< indices of kLoadLevels
   std::string was, is;    ///< both levels in words
-  std::string why;        ///< the measurement that caused it
-  std::string cost;       ///< the error that it causes, or what it restores
+  std::string why;        ///< the measurement that caused the change
+  std::string cost;       ///< the error that the change causes, or the setting that the change restores
   double lost_share = 0;  ///< share of the physics periods of the last quarter of a second that had no step
   /// Greatest distance from any place of the surface to the nearest tested point: a deeper contact is always
   /// detected.
   double unseen_bound_m = 0;
-  /// Least distance measured with the new points minus that measured with the old ones, at the part's pose;
-  /// none if the distance was beyond the map's band.
+  /// Least distance measured with the new points minus the least distance measured with the old points, at
+  /// the part's pose; none if the distance was beyond the map's band.
   std::optional<double> misread_m;
-  double k_N_per_m = 0;     ///< coupling stiffness from here on
+  double k_N_per_m = 0;     ///< coupling stiffness after the change
   double build_wall_s = 0;  ///< for new points: time from the decision to their use
   bool is_done = true;      ///< false: the change failed, and `why` gives the reason
 };
@@ -188,27 +190,27 @@ struct LoadLevelChange {
 /// Timing of a run in real time.
 struct RealTimeResult {
   bool has_priority = false, has_locked_memory = false;
-  std::vector<std::string> warnings;  ///< what the system refused, with the remedy
+  std::vector<std::string> warnings;  ///< what the operating system refused, with the remedy
   TickTimes late;                     ///< times from a tick's due time to its start
   TickTimes response;                 ///< times from a tick's due time to its wrench
   std::vector<std::pair<std::string, std::uint64_t>> missed_by;  ///< missed haptic periods by cause
   std::uint64_t stale_ticks = 0;  ///< ticks that used a pose of the part older than two physics steps
-  std::uint64_t worst_tick = 0;   ///< the longest response
+  std::uint64_t worst_tick = 0;   ///< number of the tick with the longest response
   double worst_us = 0;
   std::string worst_cause;
   TickTimes physics_late;                     ///< times from a physics step's due time to its start
   std::uint64_t physics_missed = 0;           ///< periods of the scene's physics rate without a physics step
   double behind_s = 0;                        ///< lag of simulated time behind real time while physics ran
   std::vector<LoadLevelChange> load_changes;  ///< in order of time
-  std::uint64_t faults = 0;                   ///< safety faults
+  std::uint64_t faults = 0;                   ///< number of safety faults
 };
 
 /// Result of one of several runs of the same procedure (assembleTries()).
 struct TryResult {
-  std::uint64_t seed = 0;  ///< of the virtual operator
+  std::uint64_t seed = 0;  ///< seed of the virtual operator
   Verdict verdict = Verdict::NotShown;
   double simulated_s = 0;
-  std::string reason;  ///< "part: reason" of the first step that does not fit; empty when all fit
+  std::string reason;  ///< "part: reason" of the first step whose part does not fit; empty when all parts fit
 };
 
 struct CheckResult;
@@ -216,14 +218,14 @@ struct CheckResult;
 struct AssembleResult {
   std::string scene;
   Verdict verdict =
-      Verdict::NotShown;  ///< verdictOf(): Blocked if a step is; else NotShown if a step is, or was not tried
+      Verdict::NotShown;  ///< result of verdictOf(): worst step, at best NotShown if a step was not tried
   bool completed = false;
   std::vector<StepResult> steps;
   std::vector<TryResult> tries;  ///< in order of their seeds; empty for a single run
   /// Ease of assembly: share of the tries in which every part reached its target.
   std::optional<double> ease_share;
   std::vector<TraceRow> trace;
-  std::vector<Snapshot> start, contact, end;  ///< one for each step, for pictures
+  std::vector<Snapshot> start, contact, end;  ///< one snapshot for each step, for pictures
   Snapshot finished;
   double haptic_rate_hz = 0, physics_rate_hz = 0;
   /// Result of the check of the drawn parts (check.h), without play, which the run makes before its first
@@ -233,7 +235,7 @@ struct AssembleResult {
   std::optional<RealTimeResult> real_time;  ///< set in a run in real time
   struct {
     std::uint64_t held = 0;                  ///< number of ticks that used the last snapshot unchanged
-    double jump_J = 0, greatest_jump_m = 0;  ///< caused by new snapshots
+    double jump_J = 0, greatest_jump_m = 0;  ///< energy and displacement that new snapshots caused
   } local_contact;
   EnergyLedger energy;
   ModelledCost modelled;  ///< greatest cost during the run, with the fixed field

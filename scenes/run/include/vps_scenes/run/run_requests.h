@@ -21,22 +21,23 @@ enum class RunPhase {
 /// and step. A recording holds the requests that were carried out, so that it replays bit for bit.
 class RunRequests {
  public:
-  /// True: each step waits for take(). False: each step is followed by the next one at once.
+  /// Whether each step waits for take(); if not, each step begins as soon as the previous step has ended.
   void setWaiting(bool waits) { waits_ = waits; }
   [[nodiscard]] bool isWaiting() const { return waits_; }
   /// Lets one step begin.
   void take() { may_take_ = true; }
   [[nodiscard]] bool mayTake() const { return !waits_ || may_take_; }
-  /// Releases the part where it is and ends the step.
+  /// Requests that the run release the part in hand at its present place and end the step.
   void release() { releases_ = true; }
   [[nodiscard]] bool isReleaseWanted() const { return releases_; }
-  /// Sets the gains from the next part on. No part is held at that moment, so that the force does not jump.
+  /// Sets the gains from the next part on. The gains change while no part is held, so that the force does not
+  /// jump.
   void setGains(const CouplingGains& gains) {
     const std::lock_guard lock(mutex_);
     gains_ = gains;
   }
 
-  /// Force returns to the hand after a safety fault, gradually.
+  /// After a safety fault, lets the force return to the hand gradually.
   void rearm() { rearms_ = true; }
   [[nodiscard]] bool isFaulted() const { return is_faulted_; }
 
@@ -44,7 +45,7 @@ class RunRequests {
   /// Index of the step that is in progress or was last; -1: no step has begun.
   [[nodiscard]] int step() const { return step_; }
 
-  // Called by the run.
+  // The run calls the functions below.
   void beginRun() {
     phase_ = RunPhase::Preparing;
     step_ = -1;
@@ -59,7 +60,7 @@ class RunRequests {
   bool takeRearm() { return rearms_.exchange(false); }
   void setFaulted(bool is_faulted) { is_faulted_ = is_faulted; }
   void endWork() { phase_ = RunPhase::Settling; }
-  /// Returns each setGains() once.
+  /// Returns the gains of each setGains() once only.
   std::optional<CouplingGains> takeGains() {
     const std::lock_guard lock(mutex_);
     return std::exchange(gains_, std::nullopt);

@@ -18,7 +18,7 @@ namespace vps::scenes {
 struct BodyState {
   std::string name;
   Pose X_WP;
-  Twist V_WP_W;  ///< of the part's origin, in W
+  Twist V_WP_W;  ///< velocity of the part's origin, in W
 };
 
 /// How deep two bodies overlap, by exact distance between their meshes.
@@ -33,7 +33,7 @@ struct PairOverlap {
 struct OverlappingStart {
   PairOverlap start;
   std::optional<double> apart_s;  ///< first time at which they overlapped by the limit or less; empty: never
-  double end_depth_m = 0;         ///< overlap at the last time they were judged
+  double end_depth_m = 0;         ///< overlap when the two bodies were judged last
 };
 
 struct JudgedOverlap {
@@ -66,12 +66,12 @@ struct JudgedDepth {
 
 struct SimulateOptions : ModelOptions {
   /// Measures the overlap of all pairs of bodies at the start, after every `judge_every` steps and at the
-  /// end; 0: never. Cannot be combined with is_real_time.
+  /// end; 0: never. judge_every must be 0 if is_real_time is set.
   int judge_every = 0;
   /// Runs in real time: each step begins when it is due. The steps and their results stay the same.
   bool is_real_time = false;
-  const std::atomic<bool>* stop = nullptr;  ///< set it to end the simulation early
-  /// Called after every step. May be empty.
+  const std::atomic<bool>* stop = nullptr;  ///< set the flag to end the simulation early
+  /// Called after every step; an empty function is not called.
   std::function<void(double time_s, const std::vector<BodyState>& bodies, double max_depth_m)> trace;
 };
 
@@ -80,28 +80,29 @@ struct SimulateResult {
   /// Deepest overlap of the run: exact.deepest.depth_m.
   double max_penetration_m = 0;
   double contact_depth_m = 0;  ///< deepest contact of the run as the solver saw it
-  JudgedDepth exact;           ///< judged during the run, or after a run in real time
+  JudgedDepth exact;  ///< exact overlaps, judged during the run, or after it if the run is in real time
   std::optional<JudgedOverlap> overlap;
-  double kinetic_energy_J = 0;  ///< at the end
+  double kinetic_energy_J = 0;  ///< kinetic energy at the end of the run
   /// Number of times that bodies in contact were stopped within a step, because no contact force was found
-  /// that keeps their sharp edges and corners apart for the whole step. Each stop takes energy.
+  /// that keeps their sharp edges and corners apart for the whole step. Each stop of bodies within a step
+  /// takes energy from them.
   std::size_t shortened_steps = 0;
   std::vector<FastTurn> fast_turns;  ///< one for each part that turned too fast for its steps
-  int most_substeps = 1;             ///< greatest number of parts of a step
+  int most_substeps = 1;             ///< greatest number of substeps of a step
   TickTimes step, contact_step;      ///< duration of all steps, and of the steps with contact
   ModelledCost modelled;
   double build_wall_s = 0;
   struct RealTime {
     std::uint64_t missed = 0;  ///< periods without a step of their own
     bool has_priority = false, has_locked_memory = false;
-    std::vector<std::string> warnings;  ///< what the system refused
+    std::vector<std::string> warnings;  ///< what the operating system refused
     double run_wall_s = 0;
   };
-  std::optional<RealTime> real_time;  ///< of a run in real time
+  std::optional<RealTime> real_time;  ///< timing of a run in real time; else empty
 };
 
 /// Names the part that needs the highest physics rate, with the remedy and the number of other parts that
-/// turn too fast. Empty if no part turns too fast.
+/// turn too fast. The text is empty if no part turns too fast.
 VPS_SCENES_API std::string inWords(const std::vector<FastTurn>& turns, const Fidelity& fidelity);
 
 /// Every part that is not fixed is a dynamic body at its designed pose. The limit of overlap is 10 um, or a

@@ -14,12 +14,12 @@ namespace vps::scenes {
 
 struct VerdictRow {
   Verdict verdict;
-  const char* words;  ///< in tables and reports; toText() is the name in JSON
-  int severity;       ///< of several verdicts, the one of the greatest severity counts
-  int exit_status;    ///< of the program `vps`
+  const char* words;  ///< name in tables and reports; toText() is the name in JSON
+  int severity;       ///< of several verdicts, the verdict of the greatest severity counts
+  int exit_status;    ///< exit status of the program `vps`
 };
 
-/// In the order of the enumeration.
+/// The rows of all verdicts, in the order of the enumeration Verdict.
 inline constexpr std::array<VerdictRow, 3> kVerdicts{{{Verdict::Fits, "fits", 0, 0},
                                                       {Verdict::Blocked, "blocked", 2, 1},
                                                       {Verdict::NotShown, "not shown", 1, 3}}};
@@ -38,22 +38,22 @@ constexpr bool isGood(Verdict verdict) {
 }
 
 /// Greatest late drift of a released part that counts as being at rest: a part that settles within its
-/// clearance has done so by then.
+/// clearance has settled before the late drift is measured.
 inline constexpr double kRestDriftLimit_m = 5e-6;
 
 /// Evidence about a part and its place. The default values describe a part that fits. ({}: so that GCC
 /// does not warn where an initializer names only some members.)
 struct Evidence {
-  std::string blocked{};    ///< proof by geometry that the part cannot be there; empty: there is no proof
+  std::string blocked{};    ///< geometric proof that the part cannot reach its target; empty: no proof
   bool is_in_place = true;  ///< the hand brought the part to its target, or took it off
   std::string failure{};    ///< why the part is not in place
-  double depth_m = 0, depth_limit_m = 0;  ///< deepest penetration on its path, and its limit
+  double depth_m = 0, depth_limit_m = 0;  ///< deepest penetration on the part's path, and the limit for it
   std::string deepest_against{};          ///< the other part at the deepest penetration
   double rest_drift_m = 0;  ///< greatest displacement after release; see StepResult for both drifts
   double late_drift_m = 0;
   double press_needed_N = 0, hand_N = 0;  ///< force of the press fit, and the greatest force of the hand
   bool is_taken_off = false;              ///< the step takes the part off
-  std::string doubt{};  ///< why meshes and neighbours cannot show that the part fits; empty: they can
+  std::string doubt{};  ///< why meshes and neighbours cannot show that the part fits; empty: no doubt
 
   [[nodiscard]] bool isWithinLimit() const { return depth_m <= depth_limit_m; }
   [[nodiscard]] bool isAtRest() const { return late_drift_m <= kRestDriftLimit_m; }
@@ -61,11 +61,11 @@ struct Evidence {
 
 struct Judgement {
   Verdict verdict = Verdict::Fits;
-  std::string reason;  ///< empty when it fits
+  std::string reason;  ///< reason of the verdict; empty when the part fits
 };
 
-/// The first rule that the evidence meets decides (verdict.cpp has the table of rules); Fits if it meets
-/// none.
+/// The first rule that the evidence meets decides (verdict.cpp has the table of rules); the verdict is Fits
+/// if the evidence meets no rule.
 VPS_SCENES_API Judgement judge(const Evidence& evidence);
 
 /// Evidence::blocked of a part that, as drawn, overlaps another one by more than the error of the meshes.
