@@ -40,7 +40,7 @@ class ClockedDriver : public HapticDriver {
   ClockedDriver(const device::LoopSettings& settings, const ReportFault& report)
       : settings_(settings), report_fault_(report) {}
 
-  /// Returns when the command has been carried out.
+  /// Gives a command to the loop, and returns when the command has been carried out.
   virtual void command(const HandCommand& command) = 0;
   void command(device::SyncEventKind what) { command({what, {}, 0, 0, {}}); }
   /// Passes a state with its step number on to the loop.
@@ -52,7 +52,7 @@ class ClockedDriver : public HapticDriver {
     command(device::SyncEventKind::Rearm);
     view_.safety.fault = device::SafetyFault::None;
   }
-  /// Takes over the loop's state; reports a new safety fault.
+  /// Stores the loop's state as the view of the physics thread; reports a new safety fault.
   void setView(const device::HapticState& view) {
     view_ = view;
     if (view.safety.faults == reported_faults_) return;
@@ -61,7 +61,7 @@ class ClockedDriver : public HapticDriver {
   }
 
   device::LoopSettings settings_;
-  device::HapticState view_;  ///< the loop as of the last advance()
+  device::HapticState view_;  ///< state of the loop at the last advance()
 
  private:
   ReportFault report_fault_;

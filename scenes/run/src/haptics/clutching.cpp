@@ -11,7 +11,7 @@ namespace {
 /// assumed.
 constexpr double kWaitLimit = 10;
 
-/// Share of a step that rounding may leave over.
+/// Share of a physics step that rounding errors may leave over.
 constexpr double kRounding = 1e-6;
 
 }  // namespace

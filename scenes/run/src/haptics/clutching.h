@@ -10,8 +10,8 @@
 
 namespace vps::scenes {
 
-/// Each function waits in physics steps by calling `advance`, and returns false as soon as `advance` does
-/// (the run cannot continue). Meanwhile the proxy holds the part at rest.
+/// Each function waits in physics steps by calling `advance`, and returns false as soon as `advance` returns
+/// false (the run cannot continue). During the wait the proxy holds the part at rest.
 class ClutchWork {
  public:
   /// `driver` must outlive this object.
@@ -19,7 +19,7 @@ class ClutchWork {
   ClutchWork(HapticDriver& driver, std::function<double()> step_s)
       : driver_(driver), step_s_(std::move(step_s)) {}
 
-  /// After handOver(): waits until the clutch is closed.
+  /// Waits until the clutch that handOver() started to close is closed.
   bool takeHold(const std::function<bool()>& advance) const;
   /// Opens the clutch and waits until it is open.
   bool comeFree(const std::function<bool()>& advance) const;

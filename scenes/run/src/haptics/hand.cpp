@@ -128,7 +128,7 @@ class SimulatedHand final : public Hand {
   }
 
   void begin() override {
-    std::swap(operator_, next_);  // no allocation; the old operator is freed by the next prepare()
+    std::swap(operator_, next_);  // a swap allocates nothing; the next prepare() frees the old operator
     time_s_ = next_s_;
     step_ = next_step_;
     segment_ = next_segment_;
@@ -184,7 +184,7 @@ class SimulatedHand final : public Hand {
     return loop.toDevice(hand);
   }
 
-  /// Force of the hand while it returns or has arrived. With a part in hand, the hand carries the share of
+  /// Force of the hand during and after its return. With a part in hand, the hand carries the share of
   /// the weight that the clutch passes on.
   device::HandForce returning(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) {
     time_s_ += dt_s;
@@ -199,7 +199,7 @@ class SimulatedHand final : public Hand {
   }
 
   const Scene& scene_;
-  std::vector<PathSegments> segments_;  ///< of each step
+  std::vector<PathSegments> segments_;  ///< segments of each step
   std::unique_ptr<device::SimulatedDevice> plant_;
   device::VirtualOperator operator_, next_;
   double next_s_ = 0;
@@ -261,7 +261,8 @@ class PersonHand final : public Hand {
   double step_s_ = 0, at_target_s_ = 0;
 };
 
-constexpr std::chrono::seconds kConnect{3};  // assumed: SDL and spacenavd answer within one second
+// Longest wait for a device to answer. assumed: SDL and spacenavd answer within one second
+constexpr std::chrono::seconds kConnect{3};
 constexpr std::chrono::milliseconds kConnectPoll{10};
 
 /// Options of a device that a person moves. The range of a handle under rate control can be chosen: four
@@ -297,7 +298,7 @@ std::unique_ptr<Hand> connectedPerson(const Scene& scene, const device::DeviceKi
   return personHand(std::move(device));
 }
 
-/// Repeats a recording: the samples carry the motion, the events the hand's phases.
+/// Repeats a recording: its samples contain the motion, and its events contain the hand's phases.
 class RecordedHand final : public Hand {
  public:
   explicit RecordedHand(device::Recording& recording) : recording_(recording) {}

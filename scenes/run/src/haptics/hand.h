@@ -28,22 +28,22 @@ class Hand {
  public:
   virtual ~Hand() = default;
   /// The driver that reaches the haptic loop in another process; null if the loop runs in this process.
-  /// Arguments as for makeRealTimeDriver().
+  /// The arguments are those of makeRealTimeDriver().
   virtual std::unique_ptr<HapticDriver> makeDriver(const device::LoopSettings& settings, double physics_s,
                                                    const ReportFault& report, device::RunLog* log);
   virtual device::Device& device() = 0;
   /// Plans a step that starts at time now_s. The task has only the way points of the scene's step that the
   /// part has not yet passed. May allocate; may run concurrently with step(), on another thread.
   virtual void prepare(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
-  /// Starts the step that prepare() planned. Never allocates.
+  /// The hand starts the step that prepare() planned. Never allocates.
   virtual void begin() = 0;
   /// The empty hand returns to the start of step `next` in kHandReturn_s; after the last step, to the middle
   /// of the workspace. Never allocates.
   virtual void goBack(std::size_t next) = 0;
-  /// In OperatorPhase::Regrasp, with the clutch open: moves to the start of the next segment in kHandReturn_s
-  /// and stays there until goOn(). recentre() and goOn() never allocate.
+  /// In OperatorPhase::Regrasp, with the clutch open, the hand moves to the start of the next segment in
+  /// kHandReturn_s and stays there until goOn(). recentre() and goOn() never allocate.
   virtual void recentre() = 0;
-  /// Continues the step after the clutch has closed again.
+  /// The hand continues the step after the clutch has closed again.
   virtual void goOn() = 0;
   /// Advances the hand by one tick, after the tick of the loop.
   virtual void step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) = 0;
@@ -53,7 +53,8 @@ class Hand {
   [[nodiscard]] device::OperatorState state() const { return {phase(), strategy()}; }
   /// The recorded events of a real-time run that is replayed; empty otherwise.
   [[nodiscard]] virtual std::vector<RecordedEvent> events() const { return {}; }
-  /// Whether at least `ticks` ticks are left (a recording ends).
+  /// Whether the hand can move for at least `ticks` more ticks; the hand of a recording ends with the
+  /// recording.
   [[nodiscard]] virtual bool canGoOn(int ticks) const = 0;
 };
 

@@ -24,47 +24,48 @@ class HapticDriver {
  public:
   virtual ~HapticDriver() = default;
   virtual void pause() = 0;
-  /// If the loop runs already, only clears a safety fault, as a person would between steps.
+  /// Starts the loop of a run in real time. If the loop runs already, resume() only clears a safety fault, as
+  /// a person would between steps.
   virtual void resume() = 0;
   [[nodiscard]] virtual const device::LoopSettings& settings() const = 0;
 
-  /// Hands over the part whose grasp frame is at X_WG now; the clutch begins to close. No force flows before
-  /// a coupled part is published.
+  /// Hands over the part whose grasp frame is at X_WG now; the clutch begins to close. No force acts before a
+  /// coupled part is published.
   virtual void handOver(const Pose& X_WG) = 0;
-  /// Start to open or close the clutch; last().clutch_ratio shows the progress.
+  /// The clutch starts to open or to close; last().clutch_ratio shows the progress.
   virtual void openClutch() = 0;
   virtual void closeClutch() = 0;
   /// The hand begins a step; when this returns, phase() is already the phase of that step.
   virtual void begin(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
   virtual void letGo() = 0;
-  /// Move the free hand, as the functions of Hand of the same names; the motion has begun when the function
-  /// returns.
+  /// These functions move the free hand as the functions of Hand with the same names; the motion has begun
+  /// when they return.
   virtual void goBack(std::size_t next) = 0;
   virtual void recentre() = 0;
   virtual void goOn() = 0;
 
-  /// Proceeds until the next physics step is due: lockstep runs that step's ticks, real time waits. False,
-  /// and nothing happens, if the hand cannot continue.
+  /// Proceeds until the next physics step is due: a driver in lockstep runs that step's ticks, a driver in
+  /// real time waits. If the hand cannot continue, returns false without any effect.
   [[nodiscard]] virtual bool advance() = 0;
   /// The proxy after advance(), for the physics step.
   virtual const CouplingState& proxy() = 0;
   /// Publishes the state after the physics step. This function sets state.step. state.stored_J is set while a
   /// part is held.
   virtual void publish(const device::PhysicsState& state) = 0;
-  /// Whether background work is ready: `is_ready`, or in a replay as recorded.
+  /// Whether background work is ready: `is_ready`, or in a replay the recorded answer.
   virtual bool hasSettled(bool is_ready) { return is_ready; }
   /// Called after advance(): whether axis snap acts in the coming physics step: `is_wanted`, or in a replay
-  /// as recorded.
+  /// the recorded answer.
   virtual bool snaps(bool is_wanted) { return is_wanted; }
-  /// Called after advance(): whether the part is released on request: `is_wanted`, or in a replay as
-  /// recorded.
+  /// Called after advance(): whether the part is released on request: `is_wanted`, or in a replay the
+  /// recorded answer.
   virtual bool givesUp(bool is_wanted) { return is_wanted; }
-  /// Sets the gains from the next part on, also in settings(). Not allowed in a run that is recorded.
+  /// Sets the gains from the next part on, also in settings(). setGains() is not allowed in a recorded run.
   virtual void setGains(const CouplingGains& /*gains*/) {}
   /// Time the caller spent between the last two calls of advance(); 0 in lockstep.
   [[nodiscard]] virtual double busy_s() const { return 0; }
-  /// In real time, from the next advance() on: physics steps of step_s of simulated time, one in each
-  /// period_s of real time, and other gains. settings() does not change.
+  /// In real time, from the next advance() on, a physics step of step_s of simulated time is due in each
+  /// period_s of real time, and the coupling has the given gains. settings() does not change.
   virtual void setLoadLevel(double /*step_s*/, double /*period_s*/, const CouplingGains& /*gains*/) {}
 
   /// State of the hand.
@@ -80,7 +81,7 @@ class HapticDriver {
   [[nodiscard]] virtual TickTimes times() = 0;
   /// Passes on the events that the loop reported since the last call; called by the physics thread.
   virtual void passEvents(const std::function<void(const device::DeviceEvent&)>& /*to*/) {}
-  /// Timing results; only in real time.
+  /// Timing results of a run in real time; empty in other runs.
   [[nodiscard]] virtual std::optional<RealTimeResult> realTime() = 0;
 };
 
@@ -95,9 +96,9 @@ std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, device::CouplingPor
                                                  const device::LoopSettings& settings, double physics_s,
                                                  const ReportFault& report, device::RunLog* log);
 /// Repeats a run of makeRealTimeDriver() in simulated time.
-/// @param events    as recorded
+/// @param events    the recorded events
 /// @param device    the recording, tapped
-/// @param settings  of the recorded loop, with physicsLimit_s()
+/// @param settings  settings of the recorded loop, with physicsLimit_s()
 std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<RecordedEvent> events,
                                                  device::Device& device, device::CouplingPort& port,
                                                  const device::LoopSettings& settings,

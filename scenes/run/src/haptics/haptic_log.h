@@ -9,9 +9,9 @@
 
 namespace vps::scenes {
 
-/// The haptic thread adds entries without waiting or allocating. The physics thread passes them on to the
-/// run's log in the order in which they happened, up to the tick that it has reached. The log therefore has
-/// one writer, and the order of a replay.
+/// The haptic thread adds entries without waiting or allocating. The physics thread passes the entries on to
+/// the run's log in the order of their events, up to the tick that physics has reached. The run's log
+/// therefore has one writer, and its entries have the order of a replay.
 class HapticLog final : public device::RunLog {
  public:
   /// @param log  null: entries are discarded
@@ -31,7 +31,8 @@ class HapticLog final : public device::RunLog {
         },
         [](const device::SyncEvent*) { return false; });
   }
-  /// Called by the physics thread: passes on all entries up to and including the next SyncEvent of a kind.
+  /// Called by the physics thread: passes on all entries up to and including the next SyncEvent of the given
+  /// kind.
   void passUntil(device::SyncEventKind kind) {
     pass([](const device::SyncEvent*) { return false; },
          [kind](const device::SyncEvent* event) { return event != nullptr && event->kind == kind; });
@@ -62,8 +63,8 @@ class HapticLog final : public device::RunLog {
 
   device::RunLog* log_;
   device::EntryRing ring_;
-  std::uint32_t number_ = 0;  ///< used by the haptic thread
-  std::uint32_t passed_ = 0;  ///< used by the physics thread
+  std::uint32_t number_ = 0;  ///< number of the next entry; used by the haptic thread
+  std::uint32_t passed_ = 0;  ///< number of the next entry to pass on; used by the physics thread
 };
 
 }  // namespace vps::scenes

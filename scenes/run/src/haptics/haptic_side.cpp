@@ -12,12 +12,12 @@ namespace vps::scenes {
 
 namespace {
 
-// Greatest time of missed periods that a simulated device makes up for; time beyond it is skipped. Half of
-// the time after which the dual arm's watchdog trips (20 ms without a command), so that a pause of this
-// program does not trip it.
+// Greatest time of missed periods that a simulated device makes up for; time beyond kCatchUp_s is skipped.
+// Half of the time after which the dual arm's watchdog trips (20 ms without a command), so that a pause of
+// this program does not trip it.
 constexpr double kCatchUp_s = 10e-3;
 
-constexpr std::chrono::microseconds kCommandPoll{200};  // assumed: well below a haptic period
+constexpr std::chrono::microseconds kCommandPoll{200};  // poll period. assumed: well below a haptic period
 
 double microseconds(std::int64_t ns) {
   return 1e-3 * static_cast<double>(ns);
@@ -83,7 +83,7 @@ void HapticSide::setGains(const CouplingGains& gains) {
   while (loop_.isRunning() && !loop_.setGains(gains)) std::this_thread::sleep_for(kCommandPoll);
 }
 
-// Called by the loop's thread while it runs, else by the thread that uses this object.
+// logEvent() is called by the loop's thread while the loop runs, else by the thread that uses this object.
 void HapticSide::logEvent(const device::HapticLoop& loop, device::SyncEventKind kind) {
   log_.add(device::SyncEvent{loop.last().time_s, static_cast<std::int32_t>(loop.ticks()), 1, 0, kind});
 }
@@ -94,7 +94,8 @@ void HapticSide::logTick(const device::HapticLoop& loop, std::int64_t periods) {
                              loop.received().step, device::SyncEventKind::Tick});
 }
 
-// While no part is held there is no force that a fault would have to remove, as with stalled physics.
+// While no part is held, silence of physics is no fault, since there is no force that a fault would have to
+// remove.
 void HapticSide::watchPhysics(device::HapticLoop& loop) {
   if (!is_silent_ || !loop.isHolding() || !loop.received().part.is_coupled) return;
   if (loop.state().safety.fault != device::SafetyFault::None || !is_silent_()) return;
@@ -102,7 +103,7 @@ void HapticSide::watchPhysics(device::HapticLoop& loop) {
   loop.latchFault(device::SafetyFault::PhysicsStalled);
 }
 
-// The simulated device and hand advance by the elapsed time, in steps of their own period.
+// The simulated device and hand advance by the elapsed time, in steps of the loop's period.
 void HapticSide::moveHand(device::HapticLoop& loop, double dt_s) {
   const double period_s = loop.settings().period_s;
   const double most = std::max(1.0, std::floor(kCatchUp_s / period_s));

@@ -32,10 +32,10 @@ class HapticSide {
 
   [[nodiscard]] bool isRunning() const { return loop_.isRunning(); }
   void start();
-  /// Stops the thread and logs the stop. Returns false if the thread did not run.
+  /// Stops the haptic thread and logs the stop. The result is false if the thread did not run.
   bool stop();
 
-  /// Returns when the command has been carried out.
+  /// Gives a command to the haptic thread, and returns when the command has been carried out.
   void carryOut(const HandCommand& command);
   void setGains(const CouplingGains& gains);
 
@@ -43,10 +43,11 @@ class HapticSide {
   [[nodiscard]] device::OperatorState state() const {
     return device::stateFromByte(state_.load(std::memory_order_acquire));
   }
-  /// Number of the tick of state(), or of a later tick if this is read after state(). Any thread may call.
+  /// Number of the tick of state(), or of a later tick if tick() is called after state(). Any thread may
+  /// call.
   [[nodiscard]] std::int32_t tick() const { return tick_.load(std::memory_order_acquire); }
   [[nodiscard]] const std::atomic<std::uint8_t>& stateByte() const { return state_; }
-  /// State of the loop; only while the loop does not run.
+  /// State of the loop; may be called only while the loop does not run.
   [[nodiscard]] device::HapticState loopState() { return loop_.loop().state(); }
 
   /// Takes the loop's events out of their queue and counts faults. Keeps events for passEvents(), at most as
@@ -72,7 +73,7 @@ class HapticSide {
   device::RunLog& log_;
   std::function<bool()> is_silent_;
   device::DeviceEventQueue events_;
-  std::vector<device::DeviceEvent> reported_;  ///< taken from the queue and not yet passed on
+  std::vector<device::DeviceEvent> reported_;  ///< events taken from the queue and not yet passed on
   device::TappedDevice tapped_;
   std::atomic<std::uint8_t> state_{device::toByte({})};  ///< state of the hand, written by the haptic thread
   static_assert(std::atomic<std::uint8_t>::is_always_lock_free, "the haptic thread must not wait for a lock");

@@ -53,7 +53,7 @@ class LockstepDriver final : public HapticDriver {
     device::PhysicsState numbered = state;
     numbered.step = ++published_;
     port_.physics.write(numbered);
-    loop_.receivePart();  // here and not in the next tick, since a run may end before that
+    loop_.receivePart();  // received now, since a run may end before the next tick
   }
   device::OperatorState state() override { return hand_.state(); }
   const device::TickReport& last() override { return loop_.last(); }

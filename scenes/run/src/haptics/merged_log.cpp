@@ -23,7 +23,7 @@ void MergedLog::addFromLoop(std::uint32_t number, const device::LogEntry& entry)
   const auto missing =
       static_cast<std::int32_t>(number - next_);  // the difference is right even when the numbers wrap around
   if (missing != 0)
-    return lose(missing > 0 ? static_cast<std::uint64_t>(missing) : 1);  // or the entry came twice
+    return lose(missing > 0 ? static_cast<std::uint64_t>(missing) : 1);  // else the entry came twice
   ++next_;
   loop_.push_back(entry);
   pass();
@@ -57,7 +57,8 @@ bool MergedLog::passUntil(const Event& until) {
   return false;
 }
 
-// A tick ends with the wrench that it writes. A command may read the device between two ticks.
+// The last entry of a tick is the wrench that the tick writes. A command may read the device between two
+// ticks.
 void MergedLog::passLoopEntry() {
   if (const auto* event = std::get_if<device::SyncEvent>(&loop_.front());
       event != nullptr && event->kind == device::SyncEventKind::Tick)

@@ -11,14 +11,14 @@
 namespace vps::scenes {
 
 /// Entries of the loop arrive later than the states and replies that physics uses, by the delay of the
-/// network. The entries of physics wait here until the loop's entries that precede them have arrived. Used by
-/// the physics thread; it allocates.
+/// network. The entries of physics wait in a MergedLog until the loop's entries that precede them have
+/// arrived. The physics thread uses this class, which allocates.
 class MergedLog final : public device::RunLog {
  public:
   /// @param log  outlives this object
   explicit MergedLog(device::RunLog& log) : log_(log) {}
 
-  /// Reports lost entries; nothing is added afterwards.
+  /// Reports lost entries; later entries are discarded.
   void lose(std::uint64_t count) noexcept override;
   /// Adds an entry of physics, after the entries that waitForTick() and waitForEvent() asked for.
   void add(const device::LogEntry& entry) noexcept override;
@@ -48,7 +48,8 @@ class MergedLog final : public device::RunLog {
     pass();
   }
   void pass();
-  /// False: entries of the loop that must come first are missing.
+  /// Passes on a waiting item if no entry of the loop that must come before it is missing; else returns
+  /// false.
   bool passUntil(const device::LogEntry& entry);
   bool passUntil(const Tick& until);
   bool passUntil(const Event& until);
@@ -60,8 +61,8 @@ class MergedLog final : public device::RunLog {
   std::uint32_t next_ = 0;  ///< number of the loop's next entry
   std::int32_t ticking_ = 0,
                complete_ =
-                   0;     ///< the last tick that was passed on, and the last that was passed on completely
-  bool is_over_ = false;  ///< entries were lost, so a replay ends there
+                   0;  ///< the last tick that was passed on, and the last tick that was passed on completely
+  bool is_over_ = false;  ///< entries were lost, so a replay ends at the gap
 };
 
 }  // namespace vps::scenes

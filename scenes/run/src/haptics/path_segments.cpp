@@ -65,7 +65,7 @@ class Turns {
 
  private:
   std::vector<Mat3> all_;
-  static constexpr double kRounding_rad = 1e-9;  // closer rotations are equal
+  static constexpr double kRounding_rad = 1e-9;  // rotations closer than kRounding_rad are equal
   double apart_rad_ = kRounding_rad;
   Mat3 middle_ = Mat3::Identity();
 };
@@ -105,7 +105,7 @@ struct GraspPath {
 
 /// Splits the path from the target backwards, each segment as long as possible.
 GraspPath inSegments(const std::vector<Pose>& X_WG, const Workspace& workspace_W) {
-  GraspPath path{{X_WG.back()}, {false}};  // in reverse order until the end
+  GraspPath path{{X_WG.back()}, {false}};  // in reverse order until this function ends
   Covered covered;
   covered.add(X_WG.back());
   for (std::size_t i = X_WG.size() - 1; i-- > 0;) {
@@ -222,7 +222,7 @@ PathSegments splitAlongAxes(const Scene& scene, const SceneStep& step, const Wor
     return withHandle(inSegments(X_WG, inner_W), X_PG.inverse(), scale);
   }
   PathSegments one = withHandle({X_WG, std::vector<bool>(X_WG.size(), false)}, X_PG.inverse(), scale);
-  one.way_points = step.way_points;  // unchanged to the bit
+  one.way_points = step.way_points;  // way points with unchanged bits
   return one;
 }
 

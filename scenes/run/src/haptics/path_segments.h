@@ -24,13 +24,13 @@ struct PathSegments {
 /// Positions and rotations that a device's handle can reach.
 struct Workspace {
   Vec3 size_m = Vec3::Zero();  ///< size of the box of positions
-  double turn_rad = 0;         ///< greatest rotation from the identity, about any axis; 0: any
+  double turn_rad = 0;         ///< greatest rotation from the identity, about any axis; 0: no limit
 };
 
-/// The fewest segments, each centred in the workspace in position and rotation. A path that fits has one. The
-/// last segment is as long as possible, so that a part is not re-grasped while it enters another. Throws
-/// LoadError for a path that does not fit if the scene's device has no indexing, and for two poses half a
-/// turn apart, since the direction in which the hand turns is then not defined.
+/// The fewest segments, each centred in the workspace in position and rotation. A path that fits into the
+/// workspace has one segment. The last segment is as long as possible, so that a part is not re-grasped while
+/// it enters another. Throws LoadError for a path that does not fit if the scene's device has no indexing,
+/// and for two poses half a turn apart, since the direction in which the hand turns is then not defined.
 PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace);
 
 /// The segments that remain after the part has passed `passed` of the step's own way points.

@@ -89,8 +89,8 @@ class ReplayedDriver final : public ClockedDriver {
     return next_ < events_.size() && events_[next_].event.kind == kind;
   }
 
-  /// Runs the ticks before the next event of the physics thread. True if that event has kind `kind`. A cut
-  /// recording has no samples left for further ticks.
+  /// Runs the ticks before the next event of the physics thread. The result is true if the next event has the
+  /// kind `kind`. A cut recording has no samples left for further ticks.
   bool tickUntil(device::SyncEventKind kind) {
     while (isAt(device::SyncEventKind::Tick) || isAt(device::SyncEventKind::Silent)) {
       if (isAt(device::SyncEventKind::Silent)) {
@@ -133,9 +133,9 @@ class ReplayedDriver final : public ClockedDriver {
   std::vector<RecordedEvent> events_;
   std::size_t next_ = 0;
   device::RunLog& log_;
-  std::deque<device::PhysicsState> states_;  ///< published and not yet used by a tick
+  std::deque<device::PhysicsState> states_;  ///< states published and not yet used by a tick
   TickClock clock_;
-  device::OperatorState hand_state_;  ///< state at the last event
+  device::OperatorState hand_state_;  ///< state of the hand at the last event
   bool is_running_ = false, snaps_ = false;
 };
 

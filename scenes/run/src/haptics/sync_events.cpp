@@ -43,7 +43,7 @@ void carryOut(Hand& hand, device::HapticLoop& loop, const HandCommand& command) 
 
 std::vector<RecordedEvent> recordedEvents(const std::vector<device::LogEntry>& entries) {
   std::vector<RecordedEvent> all;
-  std::size_t since = 0;  // the physics thread's last event
+  std::size_t since = 0;  // index of the physics thread's last event
   device::OperatorState hand;
   for (const device::LogEntry& entry : entries) {
     const auto* run_event = std::get_if<device::RunEvent>(&entry);

@@ -42,8 +42,8 @@ int LoadGovernor::add(double busy_s, double period_s, bool may_rise) noexcept {
   if (level_ > 0) above_.add(cost_ratios_[static_cast<std::size_t>(level_ - 1)] * busy_s, period_s);
   busy_s_ += busy_s;
   ++steps_;
-  // With steps of seconds, a window of window_s would hold too few to reach late_limit, and each would count
-  // as a stall.
+  // With steps of seconds, a window of window_s would hold fewer than late_limit steps, and each late step
+  // would count as a stall.
   const bool is_whole = now_.elapsed_s >= settings_.window_s && steps_ >= settings_.late_limit;
   return is_whole ? decide(may_rise) : level_;
 }
@@ -52,7 +52,7 @@ bool LoadGovernor::isOverloaded() const noexcept {
   return last_.late >= settings_.late_limit && last_.lostShare() > settings_.lost_limit;
 }
 
-/// True if simulated time would run faster one level down, provided that level loses no time.
+/// True if simulated time would run faster at level + 1, provided that level + 1 loses no time.
 bool LoadGovernor::isFasterBelow() const noexcept {
   const auto level = static_cast<std::size_t>(level_);
   return (1 - last_.lostShare()) * speeds_[level] < speeds_[level + 1];

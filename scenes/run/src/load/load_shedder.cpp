@@ -62,7 +62,7 @@ std::string describeReserve(const LoadGovernor::Window& window) {
   return text;
 }
 
-/// The cost of a level, as far as it is known in advance.
+/// The cost of a level, as far as the cost is known in advance.
 std::string describeBound(const LoadLevelChange& change, const CouplingGains& own, const LoadLevel& level,
                           const Fidelity& f) {
   if (change.to == 0) return "the scene's own settings apply again";
@@ -163,7 +163,7 @@ void LoadShedder::startResampling(LoadLevelChange change, std::size_t part) {
   resampling_ = std::async(
       std::launch::async, [this, factor, shells = shells_[factor], order = simulation_.orderResampling(part),
                            stop = limits_.stop]() mutable {
-        device::leaveRealTime();  // a thread inherits the priority of the one that starts it
+        device::leaveRealTime();  // a thread inherits the priority of the thread that starts it
         const double begun_s = wallSeconds();
         order.field.stop = stop;
         if (factor > 1 && !shells) shells = coarserShells(scene_, plan_, factor, stop);

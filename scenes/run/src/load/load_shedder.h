@@ -19,13 +19,14 @@ namespace vps::scenes {
 
 struct LoadLimits {
   bool may_slow = true;                     ///< simulated time may run slower than real time
-  const std::atomic<bool>* stop = nullptr;  ///< may be null; when set, resampling ends early
+  const std::atomic<bool>* stop = nullptr;  ///< when set, resampling ends early; null: never
 };
 
 /// Used by the physics thread. New shells are made on another thread and put in place between two steps when
-/// they are ready; until then no further decision is made. Rates decrease at once. They increase only while
-/// no part is held, because a coupling that becomes stiffer would push the hand. A lower rate takes gains
-/// that are passive at that rate. No level is taken at which the watchdog would see physics as stalled.
+/// they are ready; until then no further decision is made. Rates decrease at once. Rates increase only while
+/// no part is held, because a coupling that becomes stiffer would push the hand. With a lower rate, the
+/// coupling gets gains that are passive at that rate. No level is taken at which the watchdog would see
+/// physics as stalled.
 class LoadShedder {
  public:
   /// Returns the gains that are passive at a physics rate [Hz].
@@ -37,18 +38,18 @@ class LoadShedder {
   LoadShedder(const Scene& scene, const ModelPlan& plan, Simulation& simulation, HapticDriver& driver,
               const LoadLimits& limits, GainsAt gains_at, SetField set_field);
 
-  /// To be called after each step.
+  /// Call update() after each step.
   /// @param busy_s      time that the physics thread was busy since the last step
   /// @param part        the body that moves
-  /// @param is_holding  the part is coupled to the hand
+  /// @param is_holding  true while the part is coupled to the hand
   void update(double busy_s, double time_s, std::size_t part, bool is_holding);
-  /// Waits for resampling that is in progress and puts its result in place. To be called before the fixed
+  /// Waits for resampling that is in progress and puts its result in place. Call finish() before the fixed
   /// field or the moving body changes.
   void finish(double time_s);
   /// False while resampling is in progress.
   [[nodiscard]] bool isReady() const;
-  /// To be called before and after the scene's models are replaced: shells made from the old models are
-  /// discarded, and shells of the new models are made if the level needs them.
+  /// Call these functions before and after the scene's models are replaced: shells made from the old models
+  /// are discarded, and shells of the new models are made if the level needs them.
   void beforeNewModels(double time_s);
   void afterNewModels(double time_s, std::size_t part);
 
@@ -85,7 +86,7 @@ class LoadShedder {
   CouplingGains gains_;
   int level_ = 0;  ///< level in effect
   std::map<double, std::shared_ptr<const ShellSet>>
-      shells_;  ///< shells that exist, by LoadLevel::spacing_factor
+      shells_;  ///< existing shells, by LoadLevel::spacing_factor
   std::future<Resampled> resampling_;
   LoadLevelChange pending_;  ///< the change that resampling_ is for
   bool has_reported_last_level_ = false;

@@ -19,7 +19,8 @@ namespace vps::scenes {
 namespace {
 
 /// A part that did not reach its target aligns no other part. The part that it should have aligned was put at
-/// its target for this step and stays there for later steps, so these are marked as depending on it.
+/// its target for this step and stays there for later steps, so the later steps are marked as depending on
+/// that part.
 void refuseAlignment(std::vector<StepResult>& steps, std::string& not_in_place) {
   StepResult& last = steps.back();
   if (isGood(last)) return;
@@ -98,7 +99,7 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Assemble, options.models_everything);
   buildModels(scene, plan, options);
   RunTrace trace(scene, log);
-  const AssemblyWorld* faulty = nullptr;  // set before the first tick
+  const AssemblyWorld* faulty = nullptr;  // world of a failed run; set before the first tick
   AssemblyWorld world(scene, plan, hand, log, settings, options, [&](const std::string& fault) {
     if (faulty != nullptr) trace.logEvent(*faulty, device::RunEventKind::Note, "safety: " + fault);
   });

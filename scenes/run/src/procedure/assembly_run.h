@@ -13,7 +13,7 @@ namespace vps::scenes {
 /// Throws LoadError for a scene without a step, or with a part that is neither fixed, nor moved, nor scenery.
 void requireSteps(const Scene& scene);
 
-/// The hand of the scene, or of options.device. Throws LoadError as the other makeHand().
+/// The hand of the scene, or of options.device. Throws LoadError as makeHand(scene, is_real_time).
 std::unique_ptr<Hand> makeHand(const Scene& scene, const AssembleOptions& options);
 
 /// Builds the models that the scene lacks and runs every step. A hand that cannot continue (the end of a
@@ -22,7 +22,7 @@ std::unique_ptr<Hand> makeHand(const Scene& scene, const AssembleOptions& option
 ///             the scene's csv_rate_hz
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options);
-/// As above, with the result of checkDrawnTargets().
+/// Runs the procedure with the given result of checkDrawnTargets().
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options,
                             const std::vector<StepResult>& drawn);

@@ -17,7 +17,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Distance along x at which `box` overlaps none of the others, with a gap of a tenth of its length.
+/// Distance along x at which `box` overlaps none of `others`, with a gap of a tenth of the length of `box`.
 double wayAside_m(const Box& box, const std::vector<Box>& others) {
   double way_m = 0;
   const auto at = [&](double x_m) {
@@ -32,7 +32,8 @@ double wayAside_m(const Box& box, const std::vector<Box>& others) {
   return way_m;
 }
 
-/// Rotation from one way point to the next: far below half a turn, whose direction would be ambiguous.
+/// Rotation from one way point to the next way point: far below half a turn, whose direction would be
+/// ambiguous.
 constexpr double kUnscrewTurn_rad = 0.5 * std::numbers::pi;
 /// Time limit of unscrewing as a multiple of the time that the turns take. assumed: re-grasping takes as long
 /// as turning, with a margin
@@ -54,7 +55,7 @@ std::vector<Pose> unscrewed(const SceneStep& step, const Pose& X_PG) {
   return poses;
 }
 
-/// The poses before the last leg, backwards: way points, then the start.
+/// The poses before the last leg in reverse order: the way points, then the start.
 std::vector<Pose> restOfTheWay(const SceneStep& step) {
   std::vector<Pose> poses{step.X_WP_start};
   poses.insert(poses.end(), step.way_points.begin(), step.way_points.end());
@@ -82,7 +83,7 @@ SceneStep takenOff(const SceneStep& step, const Mesh& mesh) {
   SceneStep off;
   off.part = step.part;
   off.takes_off = true;
-  off.is_held = true;  // held where it was put away
+  off.is_held = true;  // something holds the part where it was put away
   off.X_WP_start = step.X_WP_target;
   off.X_WP_target = way.back();
   way.pop_back();

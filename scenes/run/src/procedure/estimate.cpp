@@ -83,7 +83,7 @@ class Estimator {
     all.bytes += cost.map_bytes + cost.shell_bytes;
   }
 
-  /// True if the field in place does not serve the step, as Simulation::needsField().
+  /// True if the field in place does not serve the step; decides as Simulation::needsField().
   [[nodiscard]] bool needsField(const std::vector<FixedPart>& parts, const FieldPlan& step) const {
     if (parts.size() != in_place_.size()) return true;
     if (parts.empty() || !region_W_) return false;

@@ -21,8 +21,8 @@ struct Shared {
   std::atomic<std::size_t> next = 0;  ///< the run that begins next
   std::atomic<unsigned> at_work = 0;  ///< workers that have not ended
   std::atomic<bool> stop = false;
-  std::mutex mutex;          ///< of `error`
-  std::exception_ptr error;  ///< the first that was thrown
+  std::mutex mutex;          ///< protects `error`
+  std::exception_ptr error;  ///< the first exception that was thrown
 
   void fail() noexcept {
     const std::lock_guard lock(mutex);
@@ -42,15 +42,15 @@ void forEachRun(std::size_t count, const ManyRunsOptions& options,
   Shared shared;
   shared.at_work = threads;
   const auto work = [&]() noexcept {
-    // Parallel loops of a run stay in an arena of their own, so that a worker that waits for one does not
-    // begin another run meanwhile.
+    // Parallel loops of a run stay in an arena of their own, so that a worker that waits for a parallel loop
+    // does not begin another run during the wait.
     tbb::task_arena own(options.has_one_core_each ? 1 : tbb::task_arena::automatic);
     for (std::size_t i = shared.next++; i < count && !shared.stop; i = shared.next++) try {
         own.execute([&] { run(i, shared.stop); });
       } catch (...) {
         shared.fail();
       }
-    --shared.at_work;  // the last use of this frame
+    --shared.at_work;  // a worker's last use of this stack frame
   };
   // The calling thread reports and does not work, and TBB has one worker less than there are cores.
   const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

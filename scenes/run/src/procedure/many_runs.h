@@ -9,11 +9,11 @@
 namespace vps::scenes {
 
 struct ManyRunsOptions {
-  unsigned threads = 0;                     ///< for the runs; 0: one for each core
+  unsigned threads = 0;                     ///< number of threads for the runs; 0: one for each core
   bool has_one_core_each = false;           ///< a run uses no more than one core for its parallel loops
-  const std::atomic<bool>* stop = nullptr;  ///< set by the user; null: cannot be stopped
-  /// Called on the caller's thread every 50 ms with the number of runs that were begun; may throw. Empty: no
-  /// reports.
+  const std::atomic<bool>* stop = nullptr;  ///< set by the user; null: the runs cannot be stopped
+  /// Called on the caller's thread every 50 ms with the number of runs that were begun; `report` may throw.
+  /// An empty function is not called.
   std::function<void(std::size_t begun)> report{};
 };
 

@@ -49,7 +49,7 @@ class Tries {
     shares_[i] = 1;
     const bool fits = isGood(result.verdict);
     const std::lock_guard lock(mutex_);
-    // The first seed that fits, or else the first seed, in whatever order the threads end.
+    // The best try is the first seed that fits, or else the first seed, in whatever order the threads end.
     if (best_try_ != tries_.size() && (best_fits_ != fits ? best_fits_ : best_try_ < i)) return;
     best_ = std::move(result);
     best_try_ = i;
@@ -75,10 +75,10 @@ class Tries {
   std::vector<StepResult> drawn_;
   const AssembleOptions& options_;
   std::vector<TryResult> tries_;
-  std::vector<std::atomic<double>> shares_;  ///< done of each try, 0 to 1
-  std::mutex mutex_;                         ///< of the members below and of options_.warn
+  std::vector<std::atomic<double>> shares_;  ///< completed share of each try, 0 to 1
+  std::mutex mutex_;                         ///< protects the members below and options_.warn
   AssembleResult best_;
-  std::size_t best_try_ = tries_.size();  ///< none yet
+  std::size_t best_try_ = tries_.size();  ///< index of the best try; tries_.size(): no try yet
   bool best_fits_ = false;
 };
 
@@ -87,7 +87,7 @@ void requireTries(const Scene& scene, const TrySettings& settings, const Assembl
   if (settings.tries < 1) throw LoadError(scene.file, "", "cannot be tried less than once; choose 1 or more");
   if (options.is_real_time)
     throw LoadError(scene.file, "", "several tries run in simulated time only; leave out --real-time");
-  makeHand(scene, false);  // refuses a person, and paths that are out of reach
+  makeHand(scene, false);  // refuses a device moved by a person, and paths out of reach
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kRingEntries = 1 << 15;  // assumed: 8 s of a real-time run at 1 kHz
+constexpr std::size_t kRingEntries = 1 << 15;  // size of the ring. assumed: 8 s of a real-time run at 1 kHz
 
 std::string inFull(double x) {
   char buffer[32];
@@ -36,7 +36,7 @@ void describe(const Struct& settings, const Rows& rows, const std::string& prefi
              [&](const auto& row) { about[prefix + siKey(row)] = inFull(std::invoke(row.get, settings)); });
 }
 
-/// Information for people and tools; the replay takes everything from the scene.
+/// Information about the run for people and tools; a replay takes all settings from the scene.
 /// @param scene  has the coupling gains that the run used
 std::map<std::string, std::string> aboutRun(const Scene& scene, const std::string& scene_bytes,
                                             const AssembleOptions& options) {

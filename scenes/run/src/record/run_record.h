@@ -23,8 +23,8 @@ inline constexpr const char* kPhysicsLimit = "physics_limit_s";
 /// recording then ends there and says so.
 class RunRecord final : public device::RunLog {
  public:
-  /// The head states program, scene, seeds, fidelity and chosen settings. The recorded scene states the
-  /// coupling gains that the run used, so that a replay uses the same gains. Throws as Recorder.
+  /// The head of the recording states program, scene, seeds, fidelity and chosen settings. The recorded scene
+  /// states the coupling gains that the run used, so that a replay uses the same gains. Throws as Recorder.
   RunRecord(const std::string& file, const Scene& scene, const device::Device& device,
             const device::LoopSettings& settings, const AssembleOptions& options);
   /// If finish() was not called, reports through options.warn where the unfinished recording is.

@@ -130,7 +130,7 @@ class Reader {
   }
   template <typename T>
   void get(std::vector<T>& list) {
-    // Grows with the bytes that are there, not by the count that they claim.
+    // The list grows with the bytes that were read, not by the count that the bytes claim.
     const auto count = bytes_.get<std::uint64_t>();
     for (std::uint64_t i = 0; i < count && bytes_.isGood(); ++i) get(list.emplace_back());
   }
@@ -147,7 +147,7 @@ class Reader {
 template <typename T, typename U>
 concept Either = std::is_same_v<std::remove_const_t<T>, U>;
 
-/// The settings of a table that came with a version.
+/// The settings of a table that the given version introduced.
 template <typename Archive, typename T, typename Rows>
 void settings(Archive& archive, T& x, const Rows& rows, int version = 1) {
   forEachRow(rows, [&](const auto& row) {
@@ -170,8 +170,8 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<ScenePart> T>
 void fields(Archive& archive, T& x) {
-  // The model is built again; velocities, tolerances and own resolutions are for simulate() and study(),
-  // which are not recorded.
+  // A part's model is not archived but built again; velocities, tolerances and own resolutions are for
+  // simulate() and study(), whose runs are not recorded.
   [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, is_scenery, press_fit_m,
                           youngs_modulus_Pa, poissons_ratio, tolerance, file, members, fastener, deflection_m,
                           rounding_m, voxel_m, spacing_m, model, is_cropped] = x;
@@ -231,7 +231,7 @@ void stepFields6(Archive& archive, T& step) {
   archive(step.takes_off);
 }
 
-/// Field of the device that version 6 introduced and that has no row.
+/// Field of the device that version 6 introduced and that has no row in a table.
 template <typename Archive, Either<DeviceSettings> T>
 void devicePlacement(Archive& archive, T& device) {
   bool has_placement = device.placement.has_value();

@@ -70,7 +70,7 @@ void BodyOverlaps::forEachOverlap(Visit visit) {
 
 PairOverlap BodyOverlaps::describe(const Pair& pair, double depth_m, const Vec3& p_W, double time_s) const {
   const auto name = [&](std::size_t part) { return scene_.parts[part].part.name; };
-  const bool is_second_first = scene_.parts[pair.first].is_fixed;  // the part that moves
+  const bool is_second_first = scene_.parts[pair.first].is_fixed;  // names the part that moves first
   return {name(is_second_first ? pair.second : pair.first), name(is_second_first ? pair.first : pair.second),
           depth_m, p_W, time_s};
 }

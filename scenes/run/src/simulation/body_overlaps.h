@@ -26,7 +26,7 @@ class BodyOverlaps {
   void move(std::size_t part, const Pose& X_WP) { X_WP_[part] = X_WP; }
   /// Records the pairs that overlap by more than the limit.
   void judgeStart();
-  /// Ends a step: move() has set the poses that the step led to.
+  /// Ends a step whose final poses move() has set.
   /// @param credit  see MotionJudge::addStep()
   void endStep(double time_s, double credit, const std::atomic<bool>* stop = nullptr) {
     motions_.addStep(time_s, X_WP_, credit, stop);

@@ -12,9 +12,9 @@
 namespace vps::scenes {
 
 /// Greatest delay of a step that is made up for; a greater delay is lost. After a long step, the next steps
-/// follow at once until the delay is zero: while a part slides into its bore, single steps take 4 ms, and 0.2
-/// ms in between. assumed: 20 ms, well below what a person sees as a delay between hand and picture (some 50
-/// ms); two periods where these are longer.
+/// follow at once until the delay is zero: while a part slides into its bore, single steps take 4 ms, and the
+/// steps between these take 0.2 ms. assumed: 20 ms, well below what a person sees as a delay between hand and
+/// picture (some 50 ms); two periods where these are longer.
 inline double mostLate_s(double period_s) {
   constexpr double kMostLate_s = 0.02;
   return std::max(kMostLate_s, 2 * period_s);
@@ -29,11 +29,12 @@ class PhysicsClock {
   /// @param locks_memory  whether to request locked memory
   /// @return what the system granted and refused
   device::RealTimeReport start(bool locks_memory);
-  /// Waits until the next step is due; returns at once if it is late. Steps later than mostLate_s() are lost.
+  /// Waits until the next step is due; does not wait if the step is late. Steps later than mostLate_s() are
+  /// lost.
   device::Beat wait() noexcept;
   /// Returns the thread to normal priority.
   void stop() noexcept;
-  /// From the next wait() on: steps of step_s of simulated time, one in each period_s of real time.
+  /// From the next wait() on, a step of step_s of simulated time is due in each period_s of real time.
   void setLoadLevel(double step_s, double period_s);
 
   /// Missed periods, in units of the first period.
@@ -48,11 +49,11 @@ class PhysicsClock {
  private:
   device::Metronome metronome_;
   device::TickHistogram late_;
-  double period_s_;  ///< as constructed
+  double period_s_;  ///< period given to the constructor
   double step_s_;
   std::uint64_t missed_ = 0;
   double behind_s_ = 0, busy_s_ = 0;
-  std::int64_t woke_ns_ = 0;  ///< end of the last wait; 0: none yet
+  std::int64_t woke_ns_ = 0;  ///< end of the last wait; 0: no wait yet
 };
 
 }  // namespace vps::scenes

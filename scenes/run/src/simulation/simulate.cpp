@@ -19,7 +19,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Cooks all fixed parts at once, or one after the other if everything is modelled.
+/// Cooks all fixed parts at once, or one after another if all parts are modelled completely.
 void cookFixed(const Scene& scene, const ModelPlan& plan, Simulation& simulation) {
   const FieldPlan& step = plan.steps.front();
   std::vector<FixedPart> fixed;

@@ -112,7 +112,7 @@ struct Simulation::World {
   std::shared_ptr<const ShellSet> shells;  // shells that replace the parts' own; null: none
   double dt_s;                             // duration of the last step or substep
   Turns turns;
-  std::vector<bullet::BodyTurn> body_turns;  // scratch
+  std::vector<bullet::BodyTurn> body_turns;  // reused memory of noteTurns()
   int most_substeps = 1;
   CookedField field;
   std::unique_ptr<btRigidBody> fixed_body;
@@ -120,7 +120,7 @@ struct Simulation::World {
   std::size_t grasped = 0;
   Pose X_PG;
   std::optional<CouplingState> target;       // the proxy's state at the end of the last step
-  std::optional<CouplingState> next_target;  // and at the end of the coming step
+  std::optional<CouplingState> next_target;  // the proxy's state at the end of the coming step
   Wrench push_G_W;                           // wrench of push() for the coming step
 
   World(const Scene& s, const ModelPlan& p)
@@ -161,7 +161,7 @@ struct Simulation::World {
     coupling->setTarget(at);
   }
 
-  /// Applies forces again, since Bullet clears them after each of its steps.
+  /// Applies the wrench of push() again, since Bullet clears them after each of its steps.
   void applyPush() {
     if (!coupling || (push_G_W.f.isZero(0) && push_G_W.tau.isZero(0))) return;
     const DynamicBody& held = bodies.at(grasped);
@@ -302,7 +302,7 @@ double Simulation::addBody(std::size_t part, const Pose& X_WP, double most_kg) {
   added.body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(static_cast<btScalar>(added.frame.mass_kg), nullptr,
                                                added.shape.get(), bullet::toBt(added.frame.inertia_kg_m2)));
-  // Also sets the interpolated pose, and the inertia about W's axes.
+  // setCenterOfMassTransform() also sets the interpolated pose, and the inertia about W's axes.
   added.body->setCenterOfMassTransform(bullet::toBt(X_WP * added.frame.X_PB));
   setMaterial(*added.body, scene_part.part.material);
   added.body->setActivationState(DISABLE_DEACTIVATION);
@@ -367,7 +367,7 @@ CouplingState Simulation::graspState() const {
 
 void Simulation::step(double dt_s, const AfterPart& after) {
   World& w = *world_;
-  constexpr int kMost = 10'000;  // as for the setting `substeps`
+  constexpr int kMost = 10'000;  // most substeps, as for the setting `substeps`
   const int set = w.scene.fidelity.substeps;
   const int parts = set > 0 ? set : bullet::substepsFor(w.world, dt_s, kMost);
   w.most_substeps = std::max(w.most_substeps, parts);
@@ -376,7 +376,8 @@ void Simulation::step(double dt_s, const AfterPart& after) {
     w.aimCoupling(static_cast<double>(k) / parts);
     w.applyPush();
     if (set == 0) w.noteTurns();
-    // Bullet makes no substeps of its own: each call is exactly one step, so that a run is a fixed sequence.
+    // Bullet makes no substeps of its own: each call of stepSimulation() is exactly one step, so that a run
+    // is a fixed sequence.
     w.world.stepSimulation(static_cast<btScalar>(w.dt_s), 0);
     if (set > 0) w.noteTurns();
     w.requireFinite();

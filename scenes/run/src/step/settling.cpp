@@ -16,7 +16,7 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{20};  // assumed: no delay that a person notices
+constexpr std::chrono::milliseconds kPoll{20};  // poll period. assumed: no delay that a person notices
 
 template <typename T>
 bool isReady(const std::future<T>& future) {
@@ -34,7 +34,7 @@ std::future<OverlapVerdict> judgeAsync(AssemblyWorld& world, std::vector<Overlap
   const bool is_one_sided = world.scene().fidelity.sides == Sides::One;
   return std::async(std::launch::async, [&body, &judge, &options = world.options(), is_one_sided,
                                          samples = std::move(samples)]() mutable {
-    device::leaveRealTime();  // a thread inherits the priority of the one that starts it
+    device::leaveRealTime();  // a thread inherits the priority of its parent thread
     // One-sided contacts miss the edges of the side without points, so their depths do not show when the part
     // was deepest.
     if (is_one_sided)
@@ -94,7 +94,7 @@ void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepRe
   HapticDriver& driver = world.driver();
   LoadShedder& shedder = world.shedder();
   if (driver.isByClock()) advanceUntil(world, [&] { return shedder.isReady(); });
-  shedder.finish(world.state().time_s);  // resampling in progress is for the part that is now fixed
+  shedder.finish(world.state().time_s);  // ends resampling for the part that is now fixed
   std::future<OverlapVerdict> verdict = judgeAsync(world, std::move(samples));
   const bool stays = result.completed && result.aligned_by.empty();
   const Pose X_WP = stays ? world.movingPose() : world.state().moving.X_WP_target;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One step of the procedure: the hand brings a part to its target and lets go of it, and the part is judged.
+// One step of the procedure: the hand brings a part to its target and releases the part, and the part is
+// judged.
 #pragma once
 
 #include <vector>
@@ -15,10 +16,10 @@ namespace vps::scenes {
 /// @param known  results of the step that are known in advance: checkDrawnTargets() and stands_on
 StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, StepResult known);
 
-// --- completion.cpp: whether the part reached its target, and if not, why
+// --- completion.cpp: whether the part reached its target, and if not, the reason
 
 /// Pose of the part when the hand reported that the part is in place, or gave up. A part that nothing holds
-/// falls from there while the hand opens.
+/// falls from this pose while the hand opens.
 struct Brought {
   Pose X_WP;
   bool is_given_up = false;
@@ -29,7 +30,7 @@ struct Brought {
 double penetrationLimit_m(const SceneStep& step);
 
 /// Sets final_error_m, final_error_rad, completed, by_contact and failure_reason. The step is completed if
-/// the hand reports that it is done, its device has not failed, and the part, now at rest, is within the
+/// the hand reports the end of its work, the device has not failed, and the part, now at rest, is within the
 /// step's tolerances. May widen tolerance_m of a part that nothing stops along its way.
 /// @param X_WP  pose of the part after its rest, or where the hand gave up
 void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, const Brought& brought,
@@ -37,10 +38,10 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
 
 // --- settling.cpp: the judge measures the released part, and the field of the next step is cooked
 
-/// Judges the step's samples and cooks the field of the next step, on other threads, then fixes the part:
-/// where it lies if the step was completed, else at its target, so that the next step finds it in place. In
-/// lockstep, simulated time does not advance meanwhile, so the swap happens at the same physics step in each
-/// run. In real time, loop and physics continue until both results are ready.
+/// Judges the step's samples and cooks the field of the next step, on other threads, then fixes the part: at
+/// its present pose if the step was completed, else at its target, so that the next step finds it in place.
+/// In lockstep, simulated time does not advance during this work, so the swap of the fields happens at the
+/// same physics step in each run. In real time, loop and physics continue until both results are ready.
 void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepResult& result);
 
 }  // namespace vps::scenes

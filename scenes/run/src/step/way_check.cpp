@@ -10,7 +10,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr int kPosesPerLeg = 24;
-// The error of a hand's aim is greater than this, so that a shallower contact does not stop it. assumed
+// The error of a hand's aim is greater than this, so that a shallower contact does not stop the hand. assumed
 constexpr double kShallow_m = 0.1e-3;
 
 /// Interpolates a pose: the centre of mass moves on a straight line, and the part turns at a constant rate.

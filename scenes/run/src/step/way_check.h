@@ -19,11 +19,11 @@ bool isFreeBetween(const OverlapJudge& judge, const JudgedBody& body, const Vec3
                    const Pose& to, double limit_m);
 
 /// Whether the straight motion of the part in hand from X_WP to its target is free: nowhere deeper in other
-/// bodies than limit_m or than at one of its ends. Makes as many measurements as for one leg.
+/// bodies than limit_m or than at one of its ends. Makes as many measurements as wallOnTheWay() for one leg.
 bool isFreeToTarget(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, double limit_m);
 
 /// Whether the part, as drawn, could move beyond its target by by_m along the unit vector axis_W within
-/// limit_m: then only sight tells the hand where to stop.
+/// limit_m: if the part could, only sight tells the hand where to stop.
 bool isFreeBeyondTarget(AssemblyWorld& world, const SceneStep& step, const Vec3& axis_W, double by_m,
                         double limit_m);
 

@@ -23,11 +23,11 @@ namespace {
 constexpr double kSnapFade_s =
     0.2;  ///< fade time of axis snap. assumed: slow enough not to feel like an impact
 /// Share of the coupling's greatest force that may be weight. A heavier part hangs on a hoist that carries
-/// the rest, and is simulated with the mass of the share in hand. Path and rest of a part do not depend on
-/// its mass, since contact and friction are proportional to it; a heavy part would swing on the coupling's
-/// spring.
+/// the rest of the weight, and is simulated with the mass that the hand carries. Path and rest of a part do
+/// not depend on its mass, since contact and friction forces are proportional to the mass; a heavy part would
+/// swing on the coupling's spring.
 constexpr double kMostCarried = 0.5;
-constexpr double kStartOverlap_m = 10e-6;  ///< a part that starts deeper than this is refused
+constexpr double kStartOverlap_m = 10e-6;  ///< a part that starts deeper inside another part is refused
 
 /// The gains times `share`, with the same limits.
 CouplingGains scaled(CouplingGains gains, double share) {
@@ -146,8 +146,8 @@ void AssemblyWorld::take(std::size_t index) {
   if (options_.has_local_contact) startLocalContact();
 }
 
-// The coupling's spring is stretched by the part's weight, so that a heavy part does not fall when it is
-// taken.
+// The coupling's spring is stretched by the part's weight, so that a heavy part does not fall when the hand
+// takes the part.
 Pose AssemblyWorld::handAt(const Pose& X_WP) const {
   Pose X_WG = X_WP * state_.moving.X_PG;
   const double k_N_per_m = driver_->settings().gains.k_N_per_m;
@@ -275,7 +275,8 @@ void AssemblyWorld::giveSnapshot() {
     shot.sample_s = driver_->last().time_s;
     shot.clock_s = device::monotonicSeconds();
   }
-  constexpr double kFiguresAge_s = 0.05;  // a new summary reads some thousand counters
+  // Least age of figures before new figures are made from some thousand counters.
+  constexpr double kFiguresAge_s = 0.05;
   if (!figures_ || state_.time_s - figures_time_s_ >= kFiguresAge_s) {
     const TickTimes haptic = driver_->times(), physics = physics_clock_.summary();
     const device::PassivityObserver energy = driver_->passivity();
@@ -318,7 +319,8 @@ void AssemblyWorld::step() {
   if (options_.after_step) options_.after_step(state_.time_s);
 
   state_.X_WP[state_.moving.part] = simulation_.pose(state_.moving.part);
-  // The part keeps the time stamp of the proxy that it answers: the loop extrapolates from that time.
+  // The state of the part keeps the time stamp of the proxy state that caused it: the loop extrapolates from
+  // that time.
   CouplingState part = simulation_.graspState();
   part.is_coupled = state_.is_holding;
   part.V_W = scaled(part.V_W, 1 / shedder_->timeDivisor());
@@ -342,8 +344,8 @@ void AssemblyWorld::keepCovered() {
     options_.warn("'" + scene_.parts[part].part.name +
                   "' came near the edge of the space around its planned path, outside of which contact was "
                   "not modelled; more of the surrounding parts is modelled now");
-  // Physics stops while the parts are modelled. In real time that would be a safety fault, so the loop is
-  // paused.
+  // Physics stops while the parts are modelled. In real time stopped physics would be a safety fault, so the
+  // loop is paused.
   const bool pauses = options_.has_local_contact || driver_->isByClock();
   if (pauses) driver_->pause();
   shedder_->beforeNewModels(state_.time_s);

@@ -26,8 +26,8 @@ struct StepPart {
   Pose X_WP_target;
   Box box_P;
   Vec3 weight_W = Vec3::Zero();
-  double hoist_N = 0;            ///< share of the weight that a hoist carries, not in weight_W [N]
-  double energy_at_grasp_J = 0;  ///< mechanical energy when it was taken
+  double hoist_N = 0;  ///< share of the weight that a hoist carries [N]; weight_W excludes the share
+  double energy_at_grasp_J = 0;  ///< mechanical energy when the part was taken
 };
 
 /// State of a run at one instant.
@@ -52,23 +52,23 @@ class AssemblyWorld {
                 const ReportFault& on_fault);
 
   /// Puts the step's part at its start and couples it to the hand; if the device's placement is known and a
-  /// person moves it, the part starts at the hand. Throws LoadError for a part that starts inside another
-  /// part.
+  /// person moves the device, the part starts at the hand. Throws LoadError for a part that starts inside
+  /// another part.
   void take(std::size_t step);
   /// Uncouples the part, which stays a dynamic body.
   /// @param is_held  something else, such as a fixture, holds the part from now on
   void release(bool is_held);
-  /// Fixes the part at a pose, so that it is no longer a dynamic body. The judge then measures against it,
-  /// unless the step took it off, and no longer against a part that the next step takes off.
+  /// Fixes the part at a pose, so that it is no longer a dynamic body. The judge then measures against the
+  /// part, unless the step took the part off, and no longer against a part that the next step takes off.
   void mount(const Pose& X_WP);
   /// Sets the share of the coupling gains that holds the part in hand.
   void setGrip(double share);
-  /// Stops a loop with local contact between two steps, because its models change.
+  /// Stops a loop with local contact between two steps, because the models that the loop uses change.
   void pauseLocalContact();
-  /// Runs one physics step with its haptic ticks. False, and nothing happens, if the hand cannot continue
-  /// (end of a recording).
-  /// @param is_settling  the step is being judged and the next field cooked: the part's motion no longer
-  /// counts, and neither regions nor load are monitored
+  /// Runs one physics step with its haptic ticks. If the hand cannot continue (end of a recording), returns
+  /// false without any effect.
+  /// @param is_settling  the step is being judged and the next field is being cooked: the part's motion no
+  /// longer counts, and neither regions nor load are monitored
   [[nodiscard]] bool advance(bool is_settling = false);
   /// The moving part as the hand and the haptic loop see it.
   [[nodiscard]] device::HeldPart heldPart() const;
@@ -92,7 +92,7 @@ class AssemblyWorld {
     const bool is_last = static_cast<std::size_t>(state_.step) + 1 >= scene_.steps.size();
     return options_.requests == nullptr || is_last || options_.requests->mayTake();
   }
-  /// Whether the part is to be released on request. To be called after advance(), while the hand works.
+  /// Whether the part is to be released on request. Call givesUp() after advance(), while the hand works.
   [[nodiscard]] bool givesUp() {
     state_.gives_up = driver_->givesUp(options_.requests != nullptr && options_.requests->isReleaseWanted());
     return state_.gives_up;
@@ -121,14 +121,14 @@ class AssemblyWorld {
   [[nodiscard]] Penetration overlapAt(const SceneStep& step, const Pose& X_WP);
   void requireFreeStart(const SceneStep& step);
   void startLocalContact();
-  /// Models the other fixed parts if the moving part comes near the border of its region.
+  /// Models the remaining fixed parts if the moving part comes near the border of the step's region.
   void keepCovered();
   void giveSnapshot();
   void passEvents();
   void shedLoad();
   /// Pose of the hand that takes the part at X_WP.
   [[nodiscard]] Pose handAt(const Pose& X_WP) const;
-  /// Takes over requested gains; called while no part is held.
+  /// Applies the gains that were requested; called while no part is held.
   void changeGains();
   /// Applies axis snap to the part in hand, for the coming step.
   void snap();
@@ -145,7 +145,7 @@ class AssemblyWorld {
   device::LocalContact local_;
   std::unique_ptr<HapticDriver> driver_;
   PlacedParts placed_;
-  std::optional<LoadShedder> shedder_;  ///< uses driver_
+  std::optional<LoadShedder> shedder_;  ///< load shedding, which uses driver_
   AssemblyState state_;
   double dt_s_;
   double grip_ = 1;
@@ -154,7 +154,7 @@ class AssemblyWorld {
   double stored_before_J_ = 0;    ///< energy stored in parts that were released earlier
   bool has_ended_ = false;
   TickClock physics_clock_;
-  std::optional<RunFigures> figures_;  ///< the last figures that the tap received, and their time
+  std::optional<RunFigures> figures_;  ///< last figures that the tap received
   double figures_time_s_ = 0;
 };
 

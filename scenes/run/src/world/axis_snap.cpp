@@ -9,12 +9,12 @@
 namespace vps::scenes {
 namespace {
 
-constexpr double kShare = 1.0 / 3;                // share of the device's peaks
-constexpr double kForce_N = 3, kTorque_Nm = 0.2;  // for a device without force output. assumed: a light guide
-constexpr double kStiffest_N_per_m = 1000;        // assumed: 3 mm off the axis are felt with 2 N
-constexpr double kStiffest_Nm_per_rad = 2;        // assumed: 0.05 rad are felt with 0.1 N m
+constexpr double kShare = 1.0 / 3;                // greatest snap force, as a share of the device's peaks
+constexpr double kForce_N = 3, kTorque_Nm = 0.2;  // peaks without force output. assumed: a light guide
+constexpr double kStiffest_N_per_m = 1000;        // assumed: 3 mm off the axis, a person feels 2 N
+constexpr double kStiffest_Nm_per_rad = 2;        // assumed: at 0.05 rad, a person feels 0.1 N m
 // Share of the greatest stable stiffness of an explicit spring, 4 m / dt^2 (Euler's symplectic method). The
-// coupling adds stiffness of its own.
+// share is small, since the coupling adds its own stiffness.
 constexpr double kStable = 0.1;
 
 double square(double x) {

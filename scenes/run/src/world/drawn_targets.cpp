@@ -155,8 +155,8 @@ void findClosedRoom(const Scene& scene, const SceneStep& planned, const std::vec
 }
 
 /// The later part that aligns this part; empty if there is none. A part without a fit with the parts in place
-/// is put down by sight. A later part that fits into it moves it to its place: a bolt through a bracket that
-/// lies on a plate finds the plate's hole, and moves the bracket.
+/// is put down by sight. A later part that fits into such a part moves the part to its target: a bolt through
+/// a bracket that lies on a plate finds the plate's hole, and moves the bracket.
 std::string alignedBy(const CheckResult& checked, const Scene& scene, std::size_t step,
                       const std::vector<InPlace>& in_place, const std::string& part) {
   const auto fits = [&](const std::string& other) {
@@ -195,7 +195,7 @@ std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std:
     const ScenePart& other = partOf(mate);
     const ScenePart& worse = knownError_m(own) >= knownError_m(other) ? own : other;
     const double error_m = errorWith(mate);
-    // Twice, for both sides, since a clearance is a difference of diameters.
+    // The error counts twice, for both sides, since a clearance is a difference of diameters.
     if (2 * error_m <= std::max(clearance_m, kContact_m) || error_m <= most_m) return;
     most_m = error_m;
     doubt = "the mesh of '" + worse.part.name + "' differs by up to " + lengthInWords(knownError_m(worse)) +

@@ -16,7 +16,7 @@ namespace vps::scenes {
 /// that the part cannot reach its target, verdict, reason and blocked_... are set too: at its target the part
 /// overlaps a part in place by more than the error of the meshes (and the scene does not allow it), or its
 /// start or target lies in a cavity without an opening. Uses exact distances, on all cores.
-/// @param checked  receives the check that the results come from; may be null
+/// @param checked  receives the check that the results come from; null: not wanted
 std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress,
                                           std::shared_ptr<const CheckResult>* checked = nullptr);
 

@@ -10,7 +10,8 @@ namespace vps::scenes {
 
 /// Settings with the gains of deriveGains(), except for gains that the scene states. Safety limits are the
 /// device's peaks.
-/// @param delay_s  delay of a network, from a state of the proxy to the answer, without the physics step
+/// @param delay_s  delay that a network adds, from a state of the proxy to the answer, without the physics
+/// step
 device::LoopSettings loopSettings(const Scene& scene, const device::Device& device, double delay_s = 0);
 
 /// The gains at which a device is passive in a scene, at physics rate physics_rate_hz.

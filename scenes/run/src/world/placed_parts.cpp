@@ -83,7 +83,7 @@ bool PlacedParts::isCovered(std::size_t step, const Box& box_P, const Pose& X_WP
 std::vector<std::size_t> PlacedParts::widenTo(std::size_t step, const Box& region_W) {
   std::vector<std::size_t> changed;
   for (const FixedPart& placed : placed_) {
-    if (!scene_.parts[placed.part].is_fixed) continue;  // all others are modelled everywhere
+    if (!scene_.parts[placed.part].is_fixed) continue;  // parts that are not fixed are modelled everywhere
     PartModelPlan& part = plan_.parts[placed.part];
     const bool is_whole = part.has_map && part.kept_P.empty();
     if (is_whole || !overlap(moved(bounds(scene_.parts[placed.part].part.mesh), placed.X_WP), region_W))
@@ -105,7 +105,7 @@ void PlacedParts::widen(std::size_t step, const Box& box_P, const Pose& X_WP) {
   widened_in_step_ = widened_step_ == step ? widened_in_step_ + 1 : 1;
   widened_step_ = step;
   ModelOptions options;
-  options.cache = options_.cache;  // without progress and warnings, which the caller received at loading
+  options.cache = options_.cache;  // but no progress and warnings, which the caller received at loading
   bool has_changed = true;
   if (widened_in_step_ > kMostInStep) {
     buildWhole(scene_, plan_, options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts in place during a run, fixed or mounted, in two forms: for the overlap judge, which measures
-// against them, and as the fixed field that is cooked from them.
+// against them, and as the fixed field that is cooked from these parts.
 #pragma once
 
 #include <algorithm>
@@ -33,13 +33,13 @@ class PlacedParts {
   /// part.
   void addToJudge(std::size_t part);
   [[nodiscard]] const OverlapJudge& judge() const { return judge_; }
-  /// The part for the judge, made at the first call. The reference stays valid until widen().
+  /// The part in the form for the judge, made at the first call. The reference stays valid until widen().
   const JudgedBody& judgedBody(std::size_t part);
 
   /// Order for the field of a step's region; empty if the field in place serves the step, or after the last
   /// step.
   [[nodiscard]] std::optional<FieldOrder> orderFor(std::size_t step);
-  /// @param field  a field without a shape means that no part is in place
+  /// @param field  the cooked field; a field without a shape means that no part is in place
   void setField(CookedField field);
 
   /// Whether a moving part stays inside the step's region, with everything that it may reach in the coming
@@ -49,9 +49,9 @@ class PlacedParts {
   [[nodiscard]] bool isCovered(std::size_t step, const Box& box_P, const Pose& X_WP, const Twist& V_W,
                                double dt_s) const;
   /// Enlarges the step's region around the part, by its own size and at each later call for the step by twice
-  /// as much; models the fixed parts in it, and cooks the parts in place there. A part that leaves four such
-  /// regions is no longer on its path: then all fixed parts are modelled everywhere, for all steps. Takes as
-  /// long as loading those parts.
+  /// as much; models the fixed parts in the region, and cooks the parts in place in the region. A part that
+  /// leaves four such regions is no longer on its path; in this case all fixed parts are modelled everywhere,
+  /// for all steps. widen() takes as long as loading the parts that it models.
   void widen(std::size_t step, const Box& box_P, const Pose& X_WP);
 
   /// How often widen() was called.
@@ -68,9 +68,9 @@ class PlacedParts {
   ModelPlan& plan_;
   Simulation& simulation_;
   const ModelOptions& options_;
-  std::vector<FixedPart> placed_;  ///< in the order in which they were added
+  std::vector<FixedPart> placed_;  ///< parts in place, in the order of add()
   OverlapJudge judge_;
-  std::vector<std::optional<JudgedBody>> judged_;  ///< by part
+  std::vector<std::optional<JudgedBody>> judged_;  ///< judged bodies, by index of the part
   ModelledCost modelled_;
   int widened_ = 0;
   std::size_t widened_step_ = 0;

@@ -24,7 +24,7 @@ struct Guide {
 };
 
 std::vector<Guide> guidesOf(const std::vector<CheckedFit>& fits, const std::string& part) {
-  constexpr double kParallel = 0.9998;  // 1 degree
+  constexpr double kParallel = 0.9998;  // cosine of 1 degree, within which fits are parallel
   std::vector<Guide> guides;
   for (const CheckedFit& fit : fits) {
     if (fit.shaft != part && fit.bore != part) continue;
@@ -41,10 +41,8 @@ std::vector<Guide> guidesOf(const std::vector<CheckedFit>& fits, const std::stri
   return guides;
 }
 
-constexpr double kSame_m = 1e-9;  // far below the accuracy of a part's pose
-
-/// The share of a mate's displacement that a fit passes on: a shaft passes on none along its axis, and a key
-/// passes on only the component across its faces.
+// Displacements that differ by less are equal; the limit is far below the accuracy of a part's pose.
+constexpr double kSame_m = 1e-9;
 Vec3 passedOn(const CheckedFit& fit, const Vec3& by_m) {
   const Vec3 along_axis_m = fit.axis_W * fit.axis_W.dot(by_m);
   if (fit.kind == FitKind::Shaft) return by_m - along_axis_m;

@@ -63,7 +63,7 @@ void RunTrace::add(const AssemblyWorld& world, TracePhase phase, StepResult& res
   const TouchState touch = world.simulation().touch();
   const TraceRow row = rowOf(world, phase, touch);
   if (log_ != nullptr && !world.hasEnded() && added_++ % log_stride_ == 0) log_->add(logEntry(row));
-  // The solver saw the contacts of the pose at the start of the step.
+  // The depth belongs to the pose at the start of the step, at which the solver found the contacts.
   rows_.add(row, {row.time_s - world.dt_s(), world.state().X_WP_before, touch.depth_m});
 
   result.field_penetration_m = std::max(result.field_penetration_m, touch.depth_m);

@@ -20,11 +20,11 @@ class RunTrace {
   /// @param log  may be null; receives events, and trace rows at scene.record.csv_rate_hz
   RunTrace(const Scene& scene, device::RunLog* log);
 
-  /// To be called after the step's part was taken.
+  /// Call beginStep() after the step's part was taken.
   void beginStep(const AssemblyWorld& world);
   /// Records the last physics step, and updates the peaks in the step's result.
   void add(const AssemblyWorld& world, TracePhase phase, StepResult& result);
-  /// To be called before the step's part is released.
+  /// Call endStep() before the step's part is released.
   void endStep(const AssemblyWorld& world);
   /// The rows of the current step.
   [[nodiscard]] std::span<const TraceRow> stepRows() const { return rows_.rows(); }
@@ -43,10 +43,10 @@ class RunTrace {
 
  private:
   device::RunLog* log_;
-  long log_stride_;  ///< number of physics steps from one logged row to the next
+  long log_stride_;  ///< number of physics steps from one logged row to the next row
   StepRows rows_;
   long added_ = 0;                               ///< physics steps so far
-  std::vector<Snapshot> start_, contact_, end_;  ///< one for each step
+  std::vector<Snapshot> start_, contact_, end_;  ///< one snapshot for each step
   double peak_contact_N_ = 0;                    ///< greatest contact force of the current step
   Vec3 axis_W_ = Vec3::Zero();                   ///< insertion axis
   double guide_N_ = 0;                           ///< force across the axis, averaged over kGuide_s

@@ -20,14 +20,14 @@ class StepRows {
   /// @param box_P  bounds of the moved part, in its frame
   void beginStep(const Box& box_P);
   /// If a step has more than `most` physics steps, every second row and the deeper of each two samples are
-  /// kept; later every fourth row, and so on. In addition, both samples of up to `most` fast physics steps
-  /// (kFast_m) are kept.
+  /// kept; the stride doubles again whenever `most` rows are exceeded. In addition, both samples of up to
+  /// `most` fast physics steps (kFast_m) are kept.
   void add(const TraceRow& row, const OverlapSample& sample);
 
   /// The rows of the current step.
   [[nodiscard]] std::span<const TraceRow> rows() const { return std::span(rows_).subspan(first_row_); }
-  /// Returns the samples of the current step, after its last row: first the samples of its rows, then, for a
-  /// thinned step, the two samples of each fast physics step.
+  /// Returns the samples of the current step when its last row was added: first the samples of the rows,
+  /// then, for a thinned step, the two samples of each fast physics step.
   [[nodiscard]] std::vector<OverlapSample> takeSamples();
   /// Returns the rows of all steps.
   [[nodiscard]] std::vector<TraceRow> takeRows() { return std::move(rows_); }
@@ -39,8 +39,8 @@ class StepRows {
   std::size_t most_;
   std::vector<TraceRow> rows_;
   std::size_t first_row_ = 0;
-  std::vector<OverlapSample> samples_;  ///< one for each row of the current step
-  std::vector<OverlapSample> fast_;     ///< two for each fast physics step; empty before thinning
+  std::vector<OverlapSample> samples_;  ///< one sample for each row of the current step
+  std::vector<OverlapSample> fast_;     ///< two samples for each fast physics step; empty before thinning
   OverlapSample last_;
   Box box_P_;
   std::size_t stride_ = 1;  ///< number of physics steps for each row of the current step
