@@ -22,7 +22,7 @@ PlacedSolid placedSolid(const FieldPart& part) {
   return {part.model->solid.get(), part.placed.X_WP};
 }
 
-/// The first part's map in W: its own map if its frame is W, else a new one.
+/// The first part's map in W: the part's own map if the part's frame is W, else a new one.
 std::shared_ptr<const VoxMap> firstMap(const FieldPart& part, const FieldOrder& order) {
   if (part.model->map && !order.rebuilds_maps && isInPlace(part.placed.X_WP)) return part.model->map;
   VoxMap map = cookVoxMap({placedSolid(part)}, voxMapSettings(order.fidelity));
@@ -49,7 +49,7 @@ std::shared_ptr<const PointShell> shellOf(const FieldOrder& order) {
   std::vector<PointShell> cropped;
   std::vector<const PointShell*> shells;
   std::vector<Pose> poses;
-  cropped.reserve(order.parts.size());  // no reallocation: `shells` points into it
+  cropped.reserve(order.parts.size());  // no reallocation: `shells` points into `cropped`
   for (const FieldPart& part : order.parts) {
     poses.push_back(part.placed.X_WP);
     shells.push_back(part.model->shell.get());

@@ -14,9 +14,9 @@
 
 namespace vps::scenes {
 
-/// The contact parameters of a part of this material. Bullet multiplies the values of two bodies: with square
-/// roots the product of the friction coefficients is their geometric mean, so that two parts of 0.15 have
-/// 0.15 between them, as in tables of friction.
+/// The contact parameters of a part of this material. Bullet multiplies the friction values of two bodies.
+/// Each value is the square root of a coefficient, so that the product is the geometric mean: two parts of
+/// 0.15 have 0.15 between them, as in tables of friction.
 bullet::SurfaceMaterial surfaceMaterial(const Material& material);
 /// The models of a moving part, with its material.
 bullet::ShapeModels shapeModels(const PartModel& model);
@@ -38,11 +38,11 @@ struct FieldPart {
 struct FieldOrder {
   std::vector<FieldPart> parts;  ///< in the field's owner order
   std::shared_ptr<const VoxMap>
-      below;                    ///< merged map of the first parts, to which the others are added; null: none
-  std::size_t below_count = 0;  ///< how many parts `below` holds
+      below;  ///< merged map of the first parts, to which the other parts are added; null: none
+  std::size_t below_count = 0;  ///< number of parts in `below`
   std::optional<Box> region_W;  ///< region that needs points; none: everywhere
   bool has_shell = true;
-  bool has_mesh = false;       ///< the field also has triangles, for ray tests; a run needs none
+  bool has_mesh = false;       ///< the field also has triangles, for ray tests; a run needs no triangles
   bool rebuilds_maps = false;  ///< builds every map from its mesh instead of using the parts' own maps
   Fidelity fidelity;
   const std::atomic<bool>* stop = nullptr;  ///< when set, ends cooking between two parts; may be null
@@ -52,15 +52,15 @@ struct CookedField {
   std::vector<FixedPart> parts;
   std::optional<Box> region_W;
   std::unique_ptr<bullet::Shape> shape;
-  double wall_s = 0;  ///< time to cook
+  double wall_s = 0;  ///< wall time of cooking the field
 
   /// Memory in addition to the parts' own models.
   [[nodiscard]] std::size_t memoryBytes(const std::vector<std::shared_ptr<const VoxMap>>& own) const;
 };
 
-/// Cooks a field from the parts' own meshes, beginning with `below` if it is given. O(surface of the added
-/// parts) and O(points in the region). The same input gives the same bits. Throws LoadError as cookVoxMap().
-/// The result has no shape for an order without parts, and may have none when stopped.
+/// Cooks a field from the parts' own meshes, beginning with FieldOrder::below if this map is given. O(surface
+/// of the added parts) and O(points in the region). The same input gives the same bits. Throws LoadError as
+/// cookVoxMap() does. The result has no shape for an order without parts, and may have no shape after a stop.
 CookedField cookField(const FieldOrder& order);
 
 }  // namespace vps::scenes

@@ -20,13 +20,14 @@ namespace vps::scenes {
 namespace {
 
 constexpr std::size_t kFacets =
-    4096;  // assumed: greatest number of samples in a mesh; one facet of a bore is enough
+    4096;  // assumed: greatest number of samples in a mesh; a bore needs one sampled facet
 constexpr std::uint32_t kCells = 12;  // assumed: cells along each axis of the mesh
-/// Greatest cosine between the normals of opposite walls: they deviate by less than 45 degrees. Flanks of
-/// gear teeth (2 x 20 degrees) are opposite walls; flanks of a metric thread (60 degrees) are not.
+/// Greatest cosine between the normals of opposite walls, which deviate from parallel by less than 45
+/// degrees. Flanks of gear teeth (2 x 20 degrees) are opposite walls; flanks of a metric thread (60 degrees)
+/// are not.
 constexpr double kOpposite = -0.7;
-constexpr double kNearest = 1e-3;   // assumed, of the mesh's size: closer facets are one wall
-constexpr double kFits = 1 + 1e-3;  // tolerance of a wall's width against its gap, for the facets of both
+constexpr double kNearest = 1e-3;   // assumed, share of the mesh's size: facets at less distance are one wall
+constexpr double kFits = 1 + 1e-3;  // factor by which a wall may exceed its gap, since both are faceted
 
 bool isFinite(const Mesh& mesh) {
   return std::ranges::all_of(mesh.vertices, [](const Vec3& p) { return p.allFinite(); });
@@ -81,8 +82,8 @@ std::uint32_t kindOf(const Mesh& mesh, std::size_t t, const Box& box) {
   return kind * 32 + static_cast<std::uint32_t>(std::clamp(size + 30, 0.0, 31.0));
 }
 
-/// All facets of a mesh with up to kFacets facets. For a finer mesh, one facet of each kind, the rarest kinds
-/// first, so that the walls of a small bore are included.
+/// All facets of a mesh with up to kFacets facets. For a finer mesh, one facet of each kind (kindOf()),
+/// beginning with the rarest kinds, so that the walls of a small bore are included.
 std::vector<std::size_t> sampledFacets(const Mesh& mesh) {
   const std::size_t count = mesh.triangles.size();
   std::vector<std::size_t> facets(count);
@@ -140,7 +141,7 @@ std::string quoted(const ScenePart& part) {
 }  // namespace
 
 double across_m(const Mesh& mesh) {
-  constexpr double kFlat = 1e-6;  // share of the greatest dimension
+  constexpr double kFlat = 1e-6;  // share of the greatest dimension; a smaller dimension counts as zero
   const Vec3 size = bounds(mesh).size();
   double across_m = std::numeric_limits<double>::infinity();
   for (const double length_m : size)
@@ -153,7 +154,7 @@ WallSizes wallSizes(const Mesh& mesh, double most_m) {
   if (mesh.triangles.empty() || !isFinite(mesh)) return sizes;
   WallSearch search(mesh, most_m);
   if (!(search.least_m() < most_m))
-    return sizes;  // no distance between facets is both long enough and short enough
+    return sizes;  // no distance between facets is both above least_m() and below most_m
   forEachSample(mesh, [&](const Vec3& p, const Vec3& normal) {
     if (const auto gap_m = search.width(p, normal, normal)) sizes.gaps_m.push_back(*gap_m);
     if (const auto wall_m = search.width(p, normal, -normal))

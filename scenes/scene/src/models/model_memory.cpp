@@ -49,7 +49,7 @@ using FidelityOf = std::function<Fidelity(const ScenePart&)>;
 
 /// Estimated memory of a plan's complete models, from areas alone; seldom less than the actual memory.
 double mostModelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& of) {
-  constexpr double kDensest = 2;  // points in each square of the spacing, which is more near edges
+  constexpr double kDensest = 2;  // points in a square with the spacing as side; more near edges
   double bytes = 0;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     if (!isBuilt(plan, i)) continue;
@@ -76,12 +76,12 @@ double modelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& o
   return bytes;
 }
 
-/// Estimated memory of the models: exact where the estimate from areas does not decide whether the models
-/// fit, else from areas. The exact one needs the points on all edges, which are many if the spacing is far
-/// too small; the other is O(triangles).
+/// Estimated memory of the models: computed from points where the estimate from areas does not decide whether
+/// the models fit, else from areas. The estimate from points needs the points on all edges, which are many if
+/// the spacing is far too small; the estimate from areas is O(triangles).
 double aboutModelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& of, double most_bytes) {
   constexpr double kFar = 8;  // the estimate from areas is at most twice the memory of complete models;
-                              // cropped models keep a share of it
+                              // cropped models need a share of the memory of complete models
   const double by_areas = mostModelBytes(scene, plan, of);
   const bool is_known = by_areas <= most_bytes || by_areas > kFar * most_bytes;
   const bool is_cropped =
@@ -102,13 +102,13 @@ Fidelity scaled(Fidelity fidelity, double factor) {
 }
 
 /// Finds one voxel and one spacing for all parts, as a scene file can state them, with which the models of a
-/// plan pass the checks below.
+/// plan pass requireParts() and requireMemory().
 class Remedy {
  public:
   Remedy(const Scene& scene, const ModelPlan& plan, double most_bytes)
       : scene_(scene), plan_(plan), most_bytes_(most_bytes > 0 ? most_bytes : kNoLimit) {}
 
-  /// The least voxel and spacing that fit, to two digits.
+  /// The least voxel and spacing with which the models fit, to two digits.
   [[nodiscard]] Fidelity find() const {
     const Fidelity least = leastOfParts();
     double high = 1;
@@ -132,7 +132,8 @@ class Remedy {
  private:
   static constexpr double kNoLimit = 1e300;
 
-  /// The scene's fidelity with a larger voxel if a map, and a larger spacing if a shell, would not be built.
+  /// The scene's fidelity with a larger voxel if a map would be too large, and a larger spacing if a shell
+  /// would have too many points.
   [[nodiscard]] Fidelity leastOfParts() const {
     constexpr double kCertain = 1.001;  // see fittingVoxel_m()
     Fidelity least = scene_.fidelity;
@@ -171,8 +172,8 @@ class Remedy {
   const double most_bytes_;
 };
 
-/// Refuses a map or a shell that could not be built, before others are built, which may take minutes.
-/// O(triangles).
+/// Refuses a map or a shell that could not be built, before the build of other models, which may take
+/// minutes. O(triangles).
 void requireParts(const Scene& scene, const ModelPlan& plan, double most_bytes) {
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const ScenePart& part = scene.parts[i];

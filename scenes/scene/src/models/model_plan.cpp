@@ -16,10 +16,10 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kDeviations = 4;        // standard deviations of the aim: exceeded in 6 of 100,000 steps
-constexpr double kPeakOverMean = 1.875;  // speed of a minimum-jerk motion
+constexpr double kPeakOverMean = 1.875;  // peak speed / mean speed of a minimum-jerk motion
 constexpr double kSpare_m = 0.5e-3;      // assumed: spring deflection and curvature of the path
-/// One-sided queries use the points of the smaller body. Below this ratio of sizes both get points, because
-/// the bridge compares boxes along other axes.
+/// One-sided queries use the points of the smaller body. Below this ratio of their sizes both bodies get
+/// points, because the bridge compares boxes along other axes.
 constexpr double kClearlySmaller = 2;
 
 double margin_m(const Scene& scene, const Box& part) {
@@ -31,10 +31,10 @@ double margin_m(const Scene& scene, const Box& part) {
          kDeviations * (hand.aim_error_m + hand.aim_error_rad * 0.5 * part.size().norm());
 }
 
-/// Adds the boxes of a screw, which may have any rotation about its axis on its last leg.
+/// Adds the boxes of a screw to `path`; on the last leg, the screw may have any rotation about its axis.
 void addTurned(const SceneStep& step, const Box& part, Box& path) {
   constexpr int kTurns =
-      8;  // of 45 degrees; between these rotations a box protrudes by less than the region's margin
+      8;  // rotations by 45 degrees; between two rotations a box protrudes by less than the region's margin
   const Vec3 center_P = part.center();
   const Vec3 axis_W = insertionAxis(step, Pose::translation(center_P));
   if (axis_W.isZero()) return;
@@ -207,7 +207,7 @@ class Planner {
     PartModelPlan &a = plan_.parts[j], &b = plan_.parts[i];
     a.has_map = b.has_map = a.has_map || b.has_map;
     a.has_shell = b.has_shell = a.has_shell || b.has_shell;
-    a.kept_P.clear();  // everywhere, because one of the two may move
+    a.kept_P.clear();  // models are kept everywhere, because one of the two parts may move
     b.kept_P.clear();
     b.same_as = j;
   }

@@ -24,7 +24,7 @@ struct MapAndShell {
   const PointShell* shell = nullptr;
 };
 
-/// Least distance of a part to the field, whose frame is W; none if it is beyond the band.
+/// Least distance of a part to the field, whose frame is W; none if the part is beyond the map's band.
 std::optional<double> leastDistance(const MapAndShell& field, const MapAndShell& part, const Pose& X_WP,
                                     Sides sides) {
   std::optional<double> least_m;

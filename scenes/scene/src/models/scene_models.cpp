@@ -66,7 +66,7 @@ namespace {
 
 /// The solid from which map and shell are built, and with which a run measures contacts and overlaps. A rigid
 /// part cannot deform, so a part that is pressed in is reduced by its declared interference, half of it on
-/// each side, and by a little less than the 10 um that count as contact, since it would jam without
+/// each side, and by a little less than the 10 um that count as contact, since the part would jam without
 /// clearance.
 std::shared_ptr<const Solid> solidOf(const ScenePart& part, const Mesh& mesh) {
   constexpr double kPressSlack_m = 8e-6;
@@ -232,11 +232,11 @@ class ModelBuilder {
 
   Scene& scene_;
   const ModelPlan& plan_;
-  const std::vector<std::size_t> parts_;  ///< ascending
+  const std::vector<std::size_t> parts_;  ///< indices of parts, ascending
   const ModelOptions& options_;
   std::vector<BuildTimes> times_;
-  std::vector<std::vector<std::string>> warnings_;  ///< by part
-  std::vector<std::exception_ptr> errors_;          ///< by part
+  std::vector<std::vector<std::string>> warnings_;  ///< warnings of each part
+  std::vector<std::exception_ptr> errors_;          ///< error of each part
   std::atomic<std::size_t> first_failed_;  ///< first part with an error; later parts need not be begun
   std::mutex reporting_;
   std::size_t triangles_ = 0, begun_ = 0;

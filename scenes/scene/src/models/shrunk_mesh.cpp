@@ -10,9 +10,9 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kSameFace = 1e-9;     // least 1 - cos of two facets' angle; facets of one plane count once
-constexpr double kIndependent = 0.02;  // facets at less than a degree count as one curved face
-constexpr double kFarthest = 3;        // greatest move in distances; a cube's corner needs 1.7
+constexpr double kSameFace = 1e-9;     // least 1 - cos of the angle of two facets that count separately
+constexpr double kIndependent = 0.02;  // facets that differ by less than a degree count as one face
+constexpr double kFarthest = 3;        // greatest move of a corner / move of its facets; a cube needs 1.7
 
 /// The displacement of a corner that moves all its facets inwards, or outwards for a negative distance.
 Vec3 inwards(const std::vector<Vec3>& normals, double by_m) {

@@ -161,7 +161,7 @@ Mat3 DisplayScreen::axes() const {
 
 void Display::placeDevice(DeviceSettings& device) const {
   if (!X_SD) return;
-  // p_S = X_SD p_D and p_S = X_SW (scale p_W), and the scene's map is p_W = placement (device.scale p_D).
+  // p_S = X_SD p_D and p_S = X_SW (scale p_W), and DeviceSettings defines p_W = placement (device.scale p_D).
   const Pose X_AD = X_SW.inverse() * *X_SD;  // frame A: the scene's axes and origin, in metres of the room
   device.scale = 1 / scale;
   device.placement = Pose(X_AD.R, Vec3(X_AD.p / scale));

@@ -39,7 +39,7 @@ std::vector<std::string> wordsOf() {
   return words;
 }
 
-/// Reads one value by its type; false when the key is absent.
+/// Reads one value of the type of `out`; returns false when the key is absent.
 inline bool readValue(const SceneKeys& keys, std::string_view key, const FieldTraits&, bool& out) {
   return keys.flag(key, out);
 }
@@ -103,7 +103,7 @@ void readRow(const SceneKeys& keys, Struct& out, const Group<Get, Rows>& group) 
 }
 
 /// Reads the fields of a table into the struct; absent keys leave its members unchanged. The caller reads the
-/// values of `Key` rows. Throws LoadError as SceneKeys.
+/// values of `Key` rows. Throws LoadError as SceneKeys does.
 template <class Struct, class Rows>
 void readFields(const SceneKeys& keys, Struct& out, const Rows& rows) {
   forEachRow(rows, [&](const auto& row) { readRow(keys, out, row); });

@@ -51,7 +51,7 @@ std::string didYouMean(const std::string& name, const std::vector<std::string>& 
   return list + (names.size() > kShown ? ", ..." : "");
 }
 
-/// Index of the part a key names; the message offers the nearest name.
+/// Index of the part that a key names; the message for an unknown name offers the nearest known name.
 template <typename Parts, typename NameOf>
 std::size_t partNamed(const SceneKeys& keys, std::string_view key, const std::string& name,
                       const Parts& parts, NameOf nameOf) {
@@ -147,7 +147,7 @@ class SceneReader {
       import_.part_per = part_per;
       const ImportedCad& cad =
           cads_.emplace(std::pair(file, part_per), importCad(path(file), import_, progress_)).first->second;
-      for (const std::string& warning : cad.warnings)  // the same file may be read as parts and as one part
+      for (const std::string& warning : cad.warnings)  // each warning once, even if a file is read twice
         if (const std::string line = file + ": " + warning;
             std::ranges::find(scene_.warnings, line) == scene_.warnings.end())
           scene_.warnings.push_back(line);
@@ -309,13 +309,13 @@ class SceneReader {
     scene_.steps.push_back(std::move(step));
   }
 
-  /// The distance [m] along +z from its target at which a part is above everything in place by then (fixed
-  /// parts, and parts of earlier steps), with a gap of half the part's height.
+  /// The distance [m] along +z from a part's target at which the part is above all fixed parts and all parts
+  /// of earlier steps, with a gap of half the part's height.
   [[nodiscard]] double liftToClear(const SceneStep& step) {
     const auto include = [this](std::size_t part, const Pose& X_WP) {
       top_m_ = std::max(top_m_, boundsAt(scene_.parts[part].part.mesh, X_WP).max.z());
     };
-    // All parts have been read by now.
+    // All parts are read before the first step.
     for (; topped_parts_ < scene_.parts.size(); ++topped_parts_)
       if (const ScenePart& part = scene_.parts[topped_parts_]; part.is_fixed)
         include(topped_parts_, part.X_WP);
@@ -374,12 +374,12 @@ class SceneReader {
   const Progress& progress_;
   Scene scene_;
   ImportSettings import_;
-  Material material_;  ///< [material]: for parts that do not state their own
+  Material material_;  ///< [material]: for parts that do not state their own material
   std::map<std::pair<std::string, PartPer>, ImportedCad> cads_;
   std::vector<PartGroup> groups_;
   std::map<std::string, std::string> group_of_;  ///< name of the group of each part
   std::size_t cad_count_ = 0;       ///< number of parts from 'cad', which are the first parts of the scene
-  std::vector<bool> is_described_;  ///< for each of these parts: it has a [[part]]
+  std::vector<bool> is_described_;  ///< for each part from 'cad': the file has a [[part]] for the part
   /// The highest point of the fixed parts and of the parts of earlier steps, among the first topped_parts_
   /// and topped_steps_.
   double top_m_ = -std::numeric_limits<double>::infinity();

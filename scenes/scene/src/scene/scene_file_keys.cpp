@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180;
 
-/// Insertions, deletions and replacements from a to b (Levenshtein 1966), row by row.
+/// Number of insertions, deletions and replacements from a to b (Levenshtein 1966), row by row.
 std::size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -70,7 +70,7 @@ constexpr Renamed kRenamedKeys[] = {{"[device]", "ratchet", "indexing"}};
 /// Renamed values of keys; `place` is the key.
 constexpr Renamed kRenamedWords[] = {{"contact", "rigid", "constraint"}, {"contact", "compliant", "penalty"}};
 
-/// The new name of a key or value; empty when it was not renamed.
+/// The new name of a renamed key or value; empty for every other name.
 template <std::size_t N>
 std::string_view newName(const Renamed (&table)[N], std::string_view place, std::string_view name) {
   const auto* const found = std::find_if(std::begin(table), std::end(table), [&](const Renamed& entry) {
@@ -99,7 +99,7 @@ toml::table parseToml(const std::string& text, const std::string& file) {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     std::string words(error.description());
-    // The message stays on one line, whatever the file holds.
+    // Control characters become blanks, so that the message stays on one line.
     std::replace_if(
         words.begin(), words.end(), [](unsigned char c) { return c < 0x20; }, ' ');
     throw LoadError(file + ":" + std::to_string(error.source().begin.line), "", "not valid TOML: " + words);
@@ -260,7 +260,7 @@ std::vector<const toml::table*> SceneKeys::tables(std::string_view key) const {
 }
 
 std::string SceneKeys::placeOf(std::string_view key) const {
-  // The line of the key, since a list may begin on the line after it.
+  // The line of the key and not of its value, since a list may begin on the line after the key.
   const auto entry = table_.find(key);
   const auto line = entry == table_.end() ? table_.source().begin.line : entry->first.source().begin.line;
   return context_.file + ":" + std::to_string(line);
@@ -335,7 +335,7 @@ Pose SceneKeys::requirePose(std::string_view key, const toml::node& node, Pose f
     if (keys.has("rpy_deg"))
       keys.fail("rpy_deg", "cannot be combined with 'rotation_xyzw'; give one of the two keys");
     const Quat rotation(q[3], q[0], q[1], q[2]);
-    // Files state four digits or more, so a larger deviation is a mistake and not rounding.
+    // Files state quaternions with four digits or more, so a larger deviation is a mistake and not rounding.
     if (std::abs(rotation.norm() - 1) > 1e-3)
       keys.fail("rotation_xyzw",
                 "has the length " + shortNumber(rotation.norm()) + "; a rotation needs the length 1");

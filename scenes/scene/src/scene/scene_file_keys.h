@@ -12,7 +12,7 @@
 #include "vps_scenes/scene/fields.h"
 
 // toml++ 3.3 asserts (under clang: assumes) that a table header holds a key, so "[=]" in a user's file would
-// abort. Without the assertion, the code after it reports the mistake.
+// abort. Without the assertion, the code after the assertion reports the user's mistake.
 #define TOML_ASSERT(expr) static_assert(true)
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
@@ -21,7 +21,7 @@
 
 namespace vps::scenes {
 
-/// The text of a TOML file. Throws LoadError if it cannot be read.
+/// The text of a TOML file. Throws LoadError if the file cannot be read.
 /// @param what, example  for messages: "scene file", "scene.toml"
 std::string readTomlText(const std::string& file, const std::string& what, const std::string& example);
 
@@ -31,20 +31,20 @@ toml::table parseToml(const std::string& text, const std::string& file);
 
 /// Facts that all tables of one scene file share.
 struct SceneFileContext {
-  std::string file;              ///< as the user named it, for messages
-  std::optional<double> unit_m;  ///< metres per plain number of a length; empty: not stated
+  std::string file;              ///< path of the file as the user wrote it, for messages
+  std::optional<double> unit_m;  ///< metres per plain number of a length; empty: no unit stated
 };
 
 /// The element of `known` with the least edit distance to `word`; empty when no element is similar.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known);
 
 /// The keys of one table. Each reading function returns false and leaves `out` unchanged when the key is
-/// absent, and throws LoadError when its value is wrong (type, range, not finite).
+/// absent, and throws LoadError when the key's value is wrong (type, range, not finite).
 class SceneKeys {
  public:
   /// @param place  name of the table in messages: "[[part]]", "[device]"; "" at the top
-  /// @param known  every key that the table may have. Another key throws LoadError at once,
-  ///               with its new name if it was renamed.
+  /// @param known  every key that the table may have. A key that is not in `known` throws LoadError at once;
+  ///               the message has the new name of a renamed key.
   SceneKeys(const toml::table& table, const SceneFileContext& context, std::string place,
             const std::vector<std::string_view>& known);
 
@@ -64,11 +64,11 @@ class SceneKeys {
   /// Reads three lengths.
   bool position(std::string_view key, Vec3& out_m) const;
   /// Reads {position = [..], rotation_xyzw = [..] or rpy_deg = [..]}; a position or rotation that is left out
-  /// keeps its value.
+  /// keeps its value in `out`.
   bool pose(std::string_view key, Pose& out) const;
   /// Reads a list of poses; a position or rotation that a pose leaves out is taken from `from`.
   bool poses(std::string_view key, const Pose& from, std::vector<Pose>& out) const;
-  /// Reads one of the words; `out` is its index.
+  /// Reads one of `words`; `out` becomes the index of the word.
   bool word(std::string_view key, const std::vector<std::string>& words, std::size_t& out) const;
 
   /// The table, or the list of tables, under a key; throws LoadError when the value is of another type.

@@ -14,7 +14,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Lead of a thread around the axis of insertion through the part's centre of mass; 0 if none is found.
+/// Lead of a thread around the axis of insertion through the part's centre of mass; 0 if no thread is found.
 double leadOnMesh_m(const Mesh& mesh, const SceneStep& step) {
   const Pose X_PG = Pose::translation(solidMass(mesh).com);
   const Vec3 axis_W = insertionAxis(step, X_PG);
@@ -91,7 +91,7 @@ class FidelityReader {
 }  // namespace
 
 void completeScrew(const SceneKeys& keys, const Mesh& mesh, SceneStep& step) {
-  constexpr double kTurned_rad = 1e-6;  // more than the rounding of the file's numbers
+  constexpr double kTurned_rad = 1e-6;  // above the rounding error of the file's numbers
   if (step.motion != StepMotion::Screw) {
     for (const char* key : {"pitch", "torque_Nm"})
       if (keys.has(key))

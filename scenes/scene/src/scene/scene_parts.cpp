@@ -28,7 +28,7 @@ MeshKey keyOf(const Mesh& mesh) {
 }
 
 /// Cache of the masses of meshes that have no Solid, by content: callers request the same parts repeatedly,
-/// some for each frame, and the repair of a mesh may take seconds.
+/// some callers for each frame, and the repair of a mesh may take seconds.
 class KnownMasses {
  public:
   MassProperties of(const Mesh& mesh, const std::string& part) {
@@ -45,7 +45,7 @@ class KnownMasses {
   }
 
  private:
-  static constexpr std::size_t kMost = 10000;  // more than a scene has parts
+  static constexpr std::size_t kMost = 10000;  // greater than the number of parts of a scene
   std::mutex mutex_;
   std::map<MeshKey, MassProperties> known_;
 };

@@ -46,8 +46,8 @@ class RadiusMap {
   }
 
  private:
-  // Samples a triangle at points that are closer to each other than half a cell at the triangle's greatest
-  // radius.
+  // Samples a triangle at points that are closer to each other than half a cell of the map at the triangle's
+  // greatest radius.
   void sample(const Vec3& a, const Vec3& b, const Vec3& c) {
     const double radius_m = std::max({a.head<2>().norm(), b.head<2>().norm(), c.head<2>().norm()});
     const double arc_m = std::max(radius_m * kTurn_rad / kAngles, row_m_);
@@ -56,7 +56,7 @@ class RadiusMap {
       return static_cast<int>(
           std::clamp(std::ceil(2 * (std::abs(way.z()) / row_m_ + way.head<2>().norm() / arc_m)), 1.0, kMost));
     };
-    // The samples are on lines along the shortest side, ac.
+    // The samples are on lines parallel to ac; the corners are swapped until ac is the shortest side.
     if (pieces(b - a) < pieces(c - a)) return sample(a, c, b);
     if (pieces(b - c) < pieces(c - a)) return sample(c, a, b);
     const int n = std::max(pieces(b - a), pieces(b - c));
@@ -95,7 +95,7 @@ constexpr int kMostStarts = 4;
 struct Row {
   bool is_known = false;
   double mean_m = 0, mean_square_m2 = 0;
-  std::complex<double> wave[kMostStarts + 1];  // coefficient of order m; the one of -m is its conjugate
+  std::complex<double> wave[kMostStarts + 1];  // [m]: order m; order -m has the conjugate
 };
 
 Row rowOf(const RadiusMap& map, int row) {
@@ -120,7 +120,7 @@ Row rowOf(const RadiusMap& map, int row) {
   return out;
 }
 
-/// The rows of a window, and their spectrum along the axis.
+/// The rows of a window (a range of heights of the map), and their spectrum along the axis.
 class Spectrum {
  public:
   Spectrum(std::span<const Row> rows, double row_m)
@@ -138,7 +138,7 @@ class Spectrum {
   /// The strongest wave with an order other than 0.
   [[nodiscard]] Wave strongest() const {
     constexpr double kLeastRows = 5, kLeastTurns = 2;
-    constexpr int kFiner = 4;  // frequency steps per wave in the window
+    constexpr int kFiner = 4;  // frequency steps between n and n + 1 waves in the window
     const double length_m = count_ * row_m_;
     Wave best;
     double best_power = 0, best_frequency = 0;
@@ -174,14 +174,14 @@ class Spectrum {
     return best;
   }
 
-  bool is_known = false;  ///< all rows are known
+  bool is_known = false;  ///< the radius is known in all rows of the window, and not constant
 
  private:
   [[nodiscard]] std::complex<double> waveAt(int order, int row) const {
     const std::complex<double>* wave = rows_[static_cast<std::size_t>(row)].wave;
     return order < 0 ? std::conj(wave[-order]) : wave[order];
   }
-  // A raised cosine, so that the cut at the window's ends adds little.
+  // A raised cosine, so that the ends of the window cause little spectral leakage.
   [[nodiscard]] double smooth(int row) const { return 1 - std::cos(kTurn_rad * (row + 0.5) / count_); }
 
   // @param is_smooth  weights the rows by smooth()
@@ -202,7 +202,7 @@ class Spectrum {
 
 // The thread in the longest window in which the thread has most of the variance.
 std::optional<ThreadForm> threadIn(const RadiusMap& map, bool is_inside) {
-  constexpr double kMostlyThread = 0.5, kLeastDepth = 0.05;  // assumed; ISO threads have 0.9 and 0.5
+  constexpr double kMostlyThread = 0.5, kLeastDepth = 0.05;  // assumed; values of ISO threads: 0.9, 0.5
   if (!(map.row_m() > 0)) return std::nullopt;
   std::vector<Row> rows;
   for (int row = 0; row < RadiusMap::kHeights; ++row) rows.push_back(rowOf(map, row));

@@ -8,7 +8,8 @@
 namespace vps::scenes {
 namespace {
 
-/// The offset at which a line begins; lines count from 1. The text's end for a line beyond the last.
+/// The offset at which a line begins; lines count from 1. For a line beyond the last line, the offset is the
+/// text's end.
 std::size_t lineStart(const std::string& text, toml::source_index line) {
   std::size_t at = 0;
   for (; line > 1 && at != std::string::npos; --line) {
@@ -44,7 +45,7 @@ std::string added(const std::string& text, const toml::table* table, const TomlV
   std::size_t at = offsetOf(text, place);
   if (table->is_inline())
     return text.substr(0, at + 1) + line + (table->empty() ? "" : ", ") + text.substr(at + 1);
-  if (at < text.size() && text[at] != '[') {  // the table consists of dotted keys, and this is the first
+  if (at < text.size() && text[at] != '[') {  // a table of dotted keys; the first key is at `at`
     at = lineStart(text, place.line);
     return text.substr(0, at) + set.table + "." + line + newline + text.substr(at);
   }
@@ -53,7 +54,7 @@ std::string added(const std::string& text, const toml::table* table, const TomlV
   return text.substr(0, at) + (is_last_line ? newline : "") + line + newline + text.substr(at);
 }
 
-/// The old content with the new value.
+/// A copy of `content` with the new value.
 toml::table contentWith(toml::table content, const TomlValue& set) {
   const toml::table one = toml::parse(set.key + " = " + set.value);
   content.insert(set.table, toml::table());
@@ -69,7 +70,7 @@ std::string edited(const std::string& text, const std::string& file, const TomlV
   // A value in an unforeseen form is not edited.
   try {
     if (toml::parse(out) == contentWith(content, set)) return out;
-  } catch (const toml::parse_error&) {  // handled as a different content below
+  } catch (const toml::parse_error&) {  // a text that is not TOML is reported below
   }
   throw LoadError(file, "",
                   "has '" + set.key + "' of [" + set.table +

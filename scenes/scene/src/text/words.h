@@ -13,7 +13,7 @@
 
 namespace vps::scenes {
 
-/// "12.3 um" below a millimetre, "1.23 mm" below a metre, "1.23 m" above.
+/// A length in words: "12.3 um" below a millimetre, "1.23 mm" below a metre, "1.23 m" above.
 inline std::string lengthInWords(double length_m) {
   char text[64];
   if (length_m < 1e-3)
@@ -25,26 +25,26 @@ inline std::string lengthInWords(double length_m) {
   return text;
 }
 
-/// "1.2 degrees"
+/// An angle in words: "1.2 degrees"
 inline std::string degreesInWords(double angle_rad) {
   char text[64];
   std::snprintf(text, sizeof text, "%.1f degrees", angle_rad * 180 / std::numbers::pi);
   return text;
 }
 
-/// "(1.00, 2.00, 3.00) mm"
+/// A point in words: "(1.00, 2.00, 3.00) mm"
 inline std::string placeInWords(const Vec3& p_W) {
   char text[128];
   std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f) mm", 1e3 * p_W.x(), 1e3 * p_W.y(), 1e3 * p_W.z());
   return text;
 }
 
-/// "'a'"
+/// A name in quotes: "'a'"
 inline std::string quoted(const std::string& name) {
   return "'" + name + "'";
 }
 
-/// "'a', 'b' and 'c'"
+/// Names in a sentence: "'a', 'b' and 'c'"
 /// @param most  greatest number of names; further names are counted: "'a', 'b' and 3 more"
 inline std::string listed(const std::vector<std::string>& names, std::size_t most) {
   std::string out;

@@ -39,7 +39,7 @@ std::vector<std::vector<HandPlace>> placesOf(const Scene& scene, const std::vect
   return of_step;
 }
 
-/// Boxes of all parts in place, without and with the path of the hand.
+/// Bounding boxes of all parts in place, without and with the path of the hand.
 struct Surroundings {
   Box parts_W, all_W;
 };

@@ -60,7 +60,7 @@ std::vector<RecordedStep> stepsOf(const device::RecordedRun& run) {
   return steps;
 }
 
-/// Poses of the path, each at least kPathPiece_m from the one before.
+/// Poses of the path, each at least kPathPiece_m from the pose before.
 std::vector<Pose> pathOf(const std::vector<HandSample>& samples) {
   std::vector<Pose> path{samples.front().X_WG};
   for (const HandSample& sample : samples)

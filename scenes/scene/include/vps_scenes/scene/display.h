@@ -17,13 +17,13 @@ struct VPS_SCENES_API HeadTrack {
   std::vector<double> time_s;
   std::vector<Pose> X_SE;
 
-  /// The pose at a time: between two poses on the straight line and the shortest rotation, outside the track
-  /// the nearest pose. The track must not be empty.
+  /// The pose at a time, interpolated between two recorded poses (straight line, shortest rotation); before
+  /// the first and after the last recorded time, the nearest pose. The track must not be empty.
   [[nodiscard]] Pose at(double t_s) const;
 };
 
-/// Reads rows of time [s], x, y, z [m] and a quaternion x, y, z, w. Throws LoadError with the line; also for
-/// times that do not increase, and for a quaternion that is no rotation.
+/// Reads rows of time [s], x, y, z [m] and a quaternion x, y, z, w. Throws LoadError with the line of the
+/// mistake, also for times that do not increase, and for a quaternion that is no rotation.
 VPS_SCENES_API HeadTrack loadHeadTrack(const std::string& file);
 
 /// A flat screen in the room's frame S [m].
@@ -36,8 +36,8 @@ struct DisplayScreen {
   [[nodiscard]] Mat3 axes() const;
 };
 
-/// A head in the room. Its eyes are on a line through its centre, along x; it looks along -z. Its pose is
-/// constant, recorded, or received from a topic of the network (tracked_heads.h).
+/// A head in the room. The eyes are on a line through the head's centre, along x; the head looks along -z.
+/// The head's pose is constant, recorded, or received from a topic of the network (tracked_heads.h).
 struct DisplayViewer {
   std::string name;
   Pose X_SE;               ///< current pose
@@ -47,7 +47,7 @@ struct DisplayViewer {
   int ros_domain = 0;
   std::string network = "lo";     ///< network interface
   double eye_distance_m = 0.063;  ///< mean of adults: Dodgson 2004
-  /// Position of an eye: -1 left, 1 right; 0 is the centre of the head.
+  /// Position of an eye; side -1: left, 1: right, 0: the centre of the head.
   [[nodiscard]] Vec3 eye_S(int side) const { return X_SE * Vec3(0.5 * side * eye_distance_m, 0, 0); }
 };
 
@@ -60,17 +60,17 @@ struct Display {
   std::vector<DisplayViewer> viewers;
   Pose X_SW;         ///< pose of the scene in the room
   double scale = 1;  ///< metres in the room per metre of the scene
-  /// Pose of the device in the room, from `vps calibrate`; none: it is unknown.
+  /// Pose of the device in the room, from `vps calibrate`; empty: the pose is unknown.
   std::optional<Pose> X_SD;
 
   /// Sets scale and placement of a scene's `[device]` so that a part in hand is seen at the hand. Without
-  /// X_SD, changes nothing.
+  /// X_SD, the function changes nothing.
   VPS_SCENES_API void placeDevice(DeviceSettings& device) const;
   [[nodiscard]] Vec3 toScene(const Vec3& p_S) const { return X_SW.inverse() * p_S / scale; }
 };
 
-/// Reads a display file (TOML, viewer/draw/STEREO.md). Throws LoadError with file, line, key and remedy; also for
-/// corners that do not form a rectangle, and for a screen that a viewer has behind the head or sees from
+/// Reads a display file (TOML, viewer/draw/STEREO.md). Throws LoadError with file, line, key and remedy; also
+/// for corners that do not form a rectangle, and for a screen that a viewer has behind the head or sees from
 /// behind, at any time of a record.
 VPS_SCENES_API Display loadDisplay(const std::string& file);
 

@@ -19,7 +19,7 @@
 
 namespace vps::scenes {
 
-/// Notation of a number in a scene file. Members and JSON are always in SI units.
+/// Notation of a number in a scene file. Values in members and in JSON are always in SI units.
 enum class Quantity {
   Plain,      ///< the member's own unit, which the key names
   Length,     ///< key "voxel": in the file's unit, or text with a unit ("20um"); in JSON "voxel_m"
@@ -33,7 +33,7 @@ struct Range {
   double max = std::numeric_limits<double>::max();
   bool is_open_min = false;
 
-  /// False for a value that is not finite.
+  /// True for a finite value within the range.
   [[nodiscard]] constexpr bool contains(double value) const noexcept {
     return (is_open_min ? value > min : value >= min) && value <= max;
   }
@@ -46,8 +46,8 @@ struct FieldTraits {
   Quantity quantity = Quantity::Plain;
   Range range = kAny;                  ///< allowed values of a setting
   int since = 1;                       ///< version of the scene archive that first holds the setting
-  std::string_view type = {};          ///< for the documentation; empty: the member's type
-  std::string_view default_text = {};  ///< for the documentation; empty: the struct's default
+  std::string_view type = {};          ///< type for the documentation; empty: the member's type
+  std::string_view default_text = {};  ///< default for the documentation; empty: the struct's
   std::string_view zero_word = {};     ///< word for the integer 0 in a scene file; empty: none
 };
 
@@ -55,30 +55,30 @@ struct FieldTraits {
 template <class Get>
 struct Field {
   std::string_view key;
-  Get get;  ///< member pointer, or a function of the struct; by std::invoke
+  Get get;  ///< member pointer, or a function of the struct; called by std::invoke
   std::string_view meaning;
   FieldTraits traits;
 };
 
-/// An object within the struct's object; with an empty key, its rows are rows of the outer object. Left out
-/// when `get` returns a null pointer or an empty optional.
+/// An object within the struct's object; with an empty key, its rows are rows of the outer object. The object
+/// is left out when `get` returns a null pointer or an empty optional.
 template <class Get, class Rows>
 struct Group {
   std::string_view key;
   Get get;
   Rows rows;
-  std::string_view meaning;  ///< documents all rows in one line; empty: each row has its own line
+  std::string_view meaning;  ///< text for all rows together; empty: each row has its own text
 };
 
 /// A list of objects.
 template <class Get, class Rows>
 struct List {
   std::string_view key;
-  Get get;  ///< to a container of structs
+  Get get;  ///< getter of a container of structs, as Field::get
   Rows rows;
 };
 
-/// For each row a list with one value for each struct of a container.
+/// Lists, one for each row, with one value for each struct of a container.
 template <class Get, class Rows>
 struct Columns {
   Get get;
@@ -178,7 +178,7 @@ constexpr const Struct* pointerTo(const Struct& of) {
   return &of;
 }
 
-/// The number of values of an enum of settings. The words of its values are toText() of 0, 1, ...
+/// The number of values of an enum of settings. The words of an enum's values are toText() of 0, 1, ...
 template <class Enum>
 inline constexpr int kValueCount = 0;
 

@@ -22,16 +22,17 @@ struct ModelledCost {
 
 struct ModelOptions {
   Progress progress;
-  bool models_everything = false;      ///< models every part everywhere (model_plan.h)
-  const VoxMapCache* cache = nullptr;  ///< keeps models between runs; null: they are built each time
-  double memory_bytes = 0;  ///< limit of the models' memory, checked before any is built; 0: the machine's
-  /// Receives one line for each part whose mesh does not tell inside from outside everywhere. May be empty.
+  bool models_everything = false;      ///< a complete map and shell for each part (model_plan.h)
+  const VoxMapCache* cache = nullptr;  ///< keeps models between runs; null: each run builds the models
+  double memory_bytes = 0;  ///< limit of the models' memory before the build; 0: the machine's memory
+  /// Receives one line for each part whose mesh does not tell inside from outside everywhere. The function
+  /// may be empty.
   std::function<void(const std::string&)> warn;
 };
 
 /// Defects of a mesh that make its inside uncertain, in words: "is not a closed surface: 2 open edges; inside
-/// and outside are certain for 99.9 % of the space near the surface". Empty for a mesh without such defects,
-/// such as a closed block with a void in it.
+/// and outside are certain for 99.9 % of the space near the surface". The text is empty for a mesh without
+/// such defects, for example a closed block with a void in the block.
 VPS_SCENES_API std::string meshWarning(const MeshReport& report);
 
 }  // namespace vps::scenes

@@ -24,11 +24,10 @@ struct NumberRow {
 VPS_SCENES_API std::vector<NumberRow> readNumberTable(const std::string& file, std::size_t columns,
                                                       const std::string& what);
 
-/// A pose from seven numbers, as tables and ROS 2 have it.
+/// A pose from seven numbers, as in tables and in ROS 2.
 /// @param n  x, y, z and a quaternion x, y, z, w
-/// @return  empty if a number is not finite or the quaternion's length differs from 1 by more than 1e-3,
-/// which
-///          allows for quaternions with three digits
+/// @return  empty if a number is not finite, or if the quaternion's length differs from 1 by more than 1e-3
+///          (a quaternion with three digits is accepted)
 VPS_SCENES_API std::optional<Pose> poseOf(std::span<const double, 7> n);
 
 }  // namespace vps::scenes

@@ -25,7 +25,7 @@ struct Part {
   Mesh mesh;
   Material material;
   Color color = {0.7f, 0.72f, 0.75f};  ///< linear RGB, 0 to 1
-  FaceColors face_colors = {};         ///< colours of the triangles, if they differ
+  FaceColors face_colors = {};         ///< colours of the triangles, if the part has several colours
 };
 
 /// The feature that a part's tolerance of size describes.
@@ -36,7 +36,7 @@ inline const char* toText(SizeOf of) {
 
 /// Distribution of a deviation within its limits.
 enum class Distribution {
-  Normal,   ///< around the mean; the limits are three standard deviations away
+  Normal,   ///< normal, around the mean; the limits are three standard deviations away
   Uniform,  ///< uniform between the limits
 };
 inline const char* toText(Distribution distribution) {
@@ -46,8 +46,8 @@ inline const char* toText(Distribution distribution) {
 /// Tolerances of a part, for study() (study.h). A run of the scene itself does not use them.
 struct PartTolerance {
   std::string size_class;           ///< class of ISO 286: "H7" of a hole, "g6" of a shaft; empty: none
-  double nominal_m = 0;             ///< nominal size for size_class; 0: from the mesh
-  double lower_m = 0, upper_m = 0;  ///< deviations of diameter or width from the drawn one
+  double nominal_m = 0;             ///< nominal size for size_class; 0: taken from the mesh
+  double lower_m = 0, upper_m = 0;  ///< limits of the deviation from the drawn diameter or width
   SizeOf size_of = SizeOf::Shaft;   ///< feature that lower_m and upper_m describe
   double position_m = 0;            ///< greatest displacement along each axis of the part
   double angle_rad = 0;             ///< greatest rotation about each axis of the part
@@ -57,10 +57,10 @@ struct PartTolerance {
 
 struct ScenePart {
   Part part;
-  Pose X_WP;              ///< designed pose, from the scene file or else from the CAD file
-  Twist V_WP_W;           ///< velocity of the origin at the start of simulate(); assemble() starts at rest
-  bool is_fixed = false;  ///< never moves; in place from the start
-  bool allow_overlap = false;  ///< may start inside another part (interference fits)
+  Pose X_WP;     ///< designed pose, from the scene file or else from the CAD file
+  Twist V_WP_W;  ///< velocity of the part's origin at the start of simulate(); assemble() starts at rest
+  bool is_fixed = false;       ///< the part never moves and is in place from the start
+  bool allow_overlap = false;  ///< the part may start inside another part (interference fits)
   bool is_scenery = false;     ///< assemble() leaves the part out: nothing collides with it
   /// Declared interference of a press fit: the excess of the part's size over the hole's, in diameter or
   /// width for a fit that check() finds, else in depth; 0: none.
@@ -70,7 +70,7 @@ struct ScenePart {
   double poissons_ratio = 0.3;
   PartTolerance tolerance;
   std::string file;                    ///< file that the mesh was read from, for messages
-  std::vector<std::string> members;    ///< parts of a group; empty for a single part
+  std::vector<std::string> members;    ///< names of the united parts of a group; empty for a single part
   std::string fastener;                ///< fastener recognized by its shape, in words: "nut M8"; empty: none
   std::optional<double> deflection_m;  ///< see ImportedPart, also for rounding_m
   double rounding_m = 0;
@@ -85,8 +85,8 @@ struct ScenePart {
 
 /// Motion by which the hand brings a part to its target.
 enum class StepMotion {
-  Push,   ///< along the last leg of its path
-  Screw,  ///< rotation about that leg, through the part's centre of mass
+  Push,   ///< the part moves along the last leg of its path
+  Screw,  ///< the part also rotates about the last leg, through its centre of mass
 };
 
 inline const char* toText(StepMotion motion) {
@@ -99,8 +99,9 @@ struct SceneStep {
   Pose X_WP_start;
   Pose X_WP_target;
   std::vector<Pose> way_points;  ///< poses of the part that the operator passes, between start and target
-  double tolerance_m = 0;  ///< greatest distance of its surface from its place at the target; 0: from its fit
-  double tolerance_rad = 0;  ///< greatest rotation from the target; 0: only the surface is judged
+  double tolerance_m = 0;        ///< greatest distance of the part's surface from its place at the target; 0:
+                                 ///< chosen by the part's fit
+  double tolerance_rad = 0;      ///< greatest rotation from the target; 0: only the surface is judged
   double clearance_m = 0;  ///< diametral clearance of the tightest fit, as stated in the file; 0: not stated
   double timeout_s = 20;
   /// A fixture or the other hand holds the part after its release, so that it need not stay in place by
@@ -108,9 +109,9 @@ struct SceneStep {
   bool is_held = false;
   StepMotion motion = StepMotion::Push;
   double pitch_m = 0;    ///< travel of a screw in one turn; negative: a left-hand thread
-  double torque_Nm = 0;  ///< torque at which a screw is tight; 0: it is turned to the height of its target
+  double torque_Nm = 0;  ///< torque at which a screw is tight; 0: the screw is turned to its target's height
   /// The part is in place at its start until this step takes it off and puts it away at its target, see
-  /// disassemblyOf(). Not a key of a scene file.
+  /// disassemblyOf(). A scene file has no key for this member.
   bool takes_off = false;
 };
 /// The pose of a part that is in place: after a step that mounts it, or before a step that takes it off.
@@ -123,10 +124,10 @@ struct OperatorSettings {
   std::uint64_t seed = 1;
   double aim_error_m = 0.3e-3;  ///< standard deviation of the aim across the path
   double aim_error_rad = 0.005;
-  double aim_turn_rad = 0;    ///< greatest error about the axis of insertion that sight does not correct
-  double speed_m_s = 0.05;    ///< average speed along the path
-  double press_N = 5;         ///< force with which the operator presses a part into its place
-  double force_limit_N = 15;  ///< the operator backs off above this
+  double aim_turn_rad = 0;  ///< greatest error of the aim about the axis of insertion, not corrected by sight
+  double speed_m_s = 0.05;  ///< average speed along the path
+  double press_N = 5;       ///< force with which the operator presses a part into its place
+  double force_limit_N = 15;  ///< the operator backs off above this force
 };
 
 struct DeviceSettings {
@@ -137,7 +138,7 @@ struct DeviceSettings {
   /// A path longer than the workspace is split; the device is clutched and recentred between the segments.
   bool has_indexing = true;
   /// Pose of the device in the scene, from `vps calibrate`: p_W = placement (scale p_D), so that a part that
-  /// a person holds appears at the hand. None: the device's axes are the scene's.
+  /// a person holds appears at the hand. Without a placement, the device's axes are the scene's.
   std::optional<Pose> placement;
 };
 
@@ -148,12 +149,13 @@ struct CouplingWishes {
 };
 
 struct RecordSettings {
-  double csv_rate_hz = 250;  ///< rows of trace.csv per second; above the physics rate: every step
+  double csv_rate_hz = 250;  ///< rows of trace.csv per second; above the physics rate: a row for each step
 };
 
-/// Bounds that a fidelity must keep; an empty bound does not apply. chooseFidelity() finds such a fidelity.
+/// Bounds that a fidelity must keep; an empty bound does not apply. chooseFidelity() finds a fidelity that
+/// keeps the bounds.
 struct FidelityWish {
-  std::optional<double> budget_hz;    ///< physics steps per second
+  std::optional<double> budget_hz;    ///< least number of physics steps per second
   std::optional<double> tolerance_m;  ///< greatest error of depth at 95 of 100 points of every surface
   std::optional<double> memory_bytes;
   std::string place;  ///< "scene.toml:4", the line of `fidelity`, for messages
@@ -176,7 +178,8 @@ struct Scene {
   /// The file states no voxel, or no spacing, so that resolveFidelity() may replace the value of the preset
   /// `normal` by one that suits the sizes of the parts (resolution.h).
   bool chooses_voxel = false, chooses_spacing = false;
-  std::string resolution_choice;  ///< choice by the sizes of the parts, in words; empty: the preset's values
+  std::string resolution_choice;  ///< voxel and spacing chosen by the sizes of the parts, in words; empty:
+                                  ///< the preset's values
   CouplingWishes coupling;
   DeviceSettings device;
   OperatorSettings hand;

@@ -12,13 +12,13 @@
 namespace vps::scenes {
 
 /// The text of a scene file, in metres, that loadScene() reads as the same scene: each part with its mesh
-/// file, and every setting that differs from the default. Does not write the meshes.
+/// file, and every setting that differs from the default. The function does not write the mesh files.
 /// @param files    mesh files of the parts, in the order of the parts, relative to the scene file
 /// @param comment  a line at the top
 VPS_SCENES_API std::string sceneText(const Scene& scene, const std::vector<std::string>& files,
                                      const std::string& comment);
 
-/// A `[[group]]` of a scene file, with its reason as a comment.
+/// A `[[group]]` of a scene file, with the group's reason as a comment.
 VPS_SCENES_API std::string groupText(const PartGroup& group);
 
 /// A text as a TOML basic string.
@@ -31,10 +31,10 @@ struct TomlValue {
   std::string table, key, value;
 };
 
-/// The text of a TOML file with these values in place of its own; a missing key or table is added. Comments,
-/// order and every other byte remain. The result is parsed again to check that it differs from the file by
-/// these values alone. Throws LoadError when the file cannot be read or is not TOML, and when a value is
-/// written in a form that this function cannot replace (for example, as a table of its own).
+/// The text of a TOML file in which `values` replace the file's own values; a missing key or table is added.
+/// Comments, order and every other byte of the file remain. The result is parsed again to check that it
+/// differs from the file in `values` alone. Throws LoadError when the file cannot be read or is not TOML, and
+/// when a value is written in a form that this function cannot replace (for example, as a table of its own).
 VPS_SCENES_API std::string editedToml(const std::string& file, std::span<const TomlValue> values);
 
 }  // namespace vps::scenes

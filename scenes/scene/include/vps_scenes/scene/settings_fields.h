@@ -28,7 +28,7 @@ inline constexpr int kValueCount<Distribution> = 2;
 inline constexpr Range kRate_Hz{.min = 1, .max = 1e6};
 inline constexpr Range kCount{.min = 1, .max = 1e6};
 
-/// Keys at the top of the file.
+/// Keys at the top of a scene file.
 inline constexpr auto kSceneKeys = std::make_tuple(
     Key{"name", "text", "the folder's name", "name of the scene in reports"},
     Key{"unit", "`\"um\"`, `\"mm\"`, `\"cm\"`, `\"m\"`, `\"inch\"`", "none",
@@ -68,7 +68,8 @@ inline constexpr auto kMaterialFields = std::make_tuple(
           {.range = kPositive, .type = "N/m^3"}));
 static_assert(coversAllMembers<Material>(kMaterialFields));
 
-/// `[[part]]`: tolerances for `vps study`. Not archived, since a recording holds a single run.
+/// `[[part]]`: tolerances for `vps study`. The tolerances are not archived, since a recording holds a single
+/// run.
 inline constexpr auto kToleranceFields = std::make_tuple(
     field(
         "size_tolerance", &PartTolerance::size_class,
@@ -195,7 +196,7 @@ static_assert(coversAllMembers<SceneStep, 5>(kStepKeys));
 /// `[device]`
 inline constexpr auto kDeviceKeys = std::make_tuple(
     field("kind", &DeviceSettings::kind, "`dual_arm`, or a name that `vps device --list` shows"),
-    // Read without the field table, since the file is checked and the member is a path.
+    // loadScene() reads this key without the field table, since it checks the file and the member is a path.
     Key{"parameters", "file", "none",
         "parameters that differ from [the built-in dual arm](../../device/data/dual_arm.toml)"},
     field("scale", &DeviceSettings::scale, "scene metres per device metre", {.range = kPositive}),
@@ -205,7 +206,7 @@ inline constexpr auto kDeviceKeys = std::make_tuple(
           "a path that exceeds the workspace or the rotation of the device is split, see below; false: such "
           "a path is an error",
           {.since = 3}),
-    // Read without the field table, since it is a pose.
+    // loadScene() reads this key without the field table, since its value is a pose.
     Key{"placement", "pose", "none",
         "pose of the device in the scene, from `vps calibrate`, so that a part that a person holds appears "
         "at the hand. None: the device's axes are the scene's"});
@@ -273,8 +274,8 @@ inline constexpr auto kFidelityFields = std::make_tuple(
         {.since = 2}));
 static_assert(coversAllMembers<Fidelity>(kFidelityFields));
 
-/// `[fidelity]`: the bounds for `auto = true`. Not archived, since a recording holds the values that were
-/// chosen.
+/// `[fidelity]`: the bounds for `auto = true`. The bounds are not archived, since a recording holds the
+/// values that were chosen.
 inline constexpr auto kFidelityWishFields = std::make_tuple(
     field(
         "tolerance", &FidelityWish::tolerance_m,
@@ -287,7 +288,7 @@ inline constexpr auto kFidelityWishFields = std::make_tuple(
           {.quantity = Quantity::Megabytes, .range = kPositive, .default_text = "no limit"}));
 static_assert(coversAllMembers<FidelityWish, 1>(kFidelityWishFields));
 
-/// `[fidelity]`: the source of the values.
+/// `[fidelity]`: keys that choose the values of other keys.
 inline constexpr auto kFidelityChoiceKeys =
     std::make_tuple(Key{"preset", "`\"fast\"`, `\"normal\"`, `\"fine\"`", "`\"normal\"`",
                         "preset that sets the keys that the table does not have"},

@@ -14,7 +14,7 @@ namespace vps::scenes {
 
 /// One sample of a step while the part is in hand.
 struct HandSample {
-  double time_s = 0;  ///< since the step began
+  double time_s = 0;  ///< time since the part was taken
   Pose X_WG;          ///< pose of the part, at its centre of mass
   double force_N = 0;
 };
@@ -23,15 +23,15 @@ struct HandSample {
 struct RunMeasures {
   double duration_s = 0;
   double path_m = 0;        ///< length of the path of the part's centre of mass, in pieces of kPathPiece_m
-  double peak_force_N = 0;  ///< on the hand
-  double mean_force_N = 0;  ///< over time
+  double peak_force_N = 0;  ///< greatest force on the hand
+  double mean_force_N = 0;  ///< mean force on the hand, over time
 };
 
-/// Motions shorter than this do not count as path: they are within the encoders' resolution or the hand's
-/// tremor.
+/// Motions shorter than this length do not count as path, since such motions are within the encoders'
+/// resolution or the hand's tremor.
 inline constexpr double kPathPiece_m = 0.5e-3;
 
-/// One step of the trainee's run against the same step of the expert's run.
+/// One step of the trainee's run compared with the same step of the expert's run.
 struct ComparedStep {
   std::string part;
   bool is_done = false;  ///< the trainee brought the part to its target
@@ -41,21 +41,21 @@ struct ComparedStep {
   double mean_deviation_m = 0;
   double deviation_rad = 0;   ///< greatest rotation against the nearest pose of the expert's path
   double excess_force_N = 0;  ///< the trainee's peak force minus the expert's
-  /// Score from 0 to 100: the mean of three ratios, for time, path and peak force. Each ratio is the expert's
-  /// value divided by the trainee's and at most 1. The score of a step that is not done is 0. assumed: equal
-  /// weights
+  /// Score from 0 to 100: the mean of three ratios, for time, path and peak force. Each ratio of the score is
+  /// the expert's value divided by the trainee's and at most 1. The score of a step that is not done is 0.
+  /// assumed: the ratios have equal weights
   double score = 0;
-  std::vector<HandSample> expert_samples, trainee_samples;  ///< for pictures
+  std::vector<HandSample> expert_samples, trainee_samples;  ///< for the report's plots of path and force
 };
 
-/// Forces below this count as this force, so that the ratio of two small forces does not dominate a score.
-/// assumed: a force that a hand feels clearly
+/// A force below kLeastForce_N counts as kLeastForce_N, so that the ratio of two small forces does not
+/// dominate a score. assumed: a force that a hand feels clearly
 inline constexpr double kLeastForce_N = 1;
 
 struct RunComparison {
   std::string expert, trainee;      ///< file names of the recordings
-  double score = 0;                 ///< mean over the expert's steps
-  std::vector<ComparedStep> steps;  ///< in the expert's order
+  double score = 0;                 ///< mean score of the expert's steps
+  std::vector<ComparedStep> steps;  ///< in the order of the expert's run
   std::vector<std::string> notes;   ///< reasons to doubt the comparison, in words
 };
 

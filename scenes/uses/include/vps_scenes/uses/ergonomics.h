@@ -31,16 +31,16 @@ struct Body {
   [[nodiscard]] double shoulderHeight_m(Posture posture) const {
     return posture == Posture::Standing ? 0.818 * stature_m : kSeat_m + (0.818 - 0.530) * stature_m;
   }
-  /// Height of the seat, compressed. assumed: a desk chair [EN 1335-1: 0.40 to 0.51 m] that is set for a
-  /// bench of 0.74 m.
+  /// Height of the compressed seat. assumed: a desk chair [EN 1335-1: 0.40 to 0.51 m] that is set for a bench
+  /// of 0.74 m.
   static constexpr double kSeat_m = 0.46;
 };
 VPS_SCENES_API const std::vector<Body>& assumedBodies();
 
 /// Heights of the bench at which a person sits or stands. assumed: tables by EN 527-1:2011.
 inline constexpr double kSeatedBench_m = 0.74, kStandingBench_m = 1.05;
-/// Horizontal distance of the shoulders from the nearest part or point of the path; the bench's edge is
-/// between them. assumed
+/// Horizontal distance of the shoulders from the nearest part or point of the hand's path; the bench's edge
+/// lies between the shoulders and this nearest point. assumed
 inline constexpr double kToShoulder_m = 0.20;
 
 /// An arm whose hand holds a point; the elbow hangs below the line from shoulder to hand.
@@ -48,10 +48,11 @@ struct ArmPose {
   double reach_share = 0;  ///< distance of the hand from the shoulder, divided by the arm's length
   double raised_rad = 0;   ///< angle of the upper arm from hanging down
   double elbow_rad = 0;    ///< flexion of the elbow; 0: stretched
-  /// False if the point is too far. The angles are then those of an arm that is stretched towards the point.
+  /// False if the point is too far. If the point is too far, the angles are those of an arm that is stretched
+  /// towards the point.
   bool is_reached = false;
 };
-/// @param p_SH  hand from the shoulder; z is up
+/// @param p_SH  position of the hand relative to the shoulder; z is up
 VPS_SCENES_API ArmPose armTo(const Body& body, const Vec3& p_SH);
 
 /// Sum of the scores of upper arm and lower arm by RULA's first two steps [McAtamney and Corlett 1993]: 2
@@ -64,13 +65,14 @@ inline constexpr int kBestRula = 2, kWorstRula = 6;
 struct StepErgonomics {
   std::string part, body;
   Posture posture = Posture::Seated;
-  /// "left" or "right": the hand that reaches the part for a longer time, or with less strain.
+  /// "left" or "right": the hand that reaches the part for a longer time than the other hand, or with less
+  /// strain.
   std::string hand;
-  double greatest_reach = 0;      ///< greatest distance from the shoulder, as a share of the arm's length
-  double out_of_reach_share = 0;  ///< share of the time in hand
-  double raised_rad = 0;          ///< greatest angle of the upper arm
+  double greatest_reach = 0;      ///< greatest distance of the hand from the shoulder / arm's length
+  double out_of_reach_share = 0;  ///< share of the time in hand with the part out of the arm's reach
+  double raised_rad = 0;          ///< greatest angle of the upper arm from hanging down
   double elbow_least_rad = 0, elbow_most_rad = 0;
-  double rula_mean = 0;  ///< mean over time; a point out of reach counts as kWorstRula
+  double rula_mean = 0;  ///< mean of rulaArm() over time; a point out of reach counts as kWorstRula
   int rula_worst = 0;
 };
 
@@ -79,10 +81,10 @@ struct Ergonomics {
   Vec3 p_WB = Vec3::Zero();           ///< point below the middle of the shoulders, at the bench's height
 };
 
-/// Measures ergonomics on the trace of a run. The person is on the side of the least y and looks along +y.
-/// Gravity must point along -z, else the result is empty. The lowest point of the assembled parts touches the
-/// bench, and the person's middle is at the middle of the parts. Rows with the part at rest do not count.
-/// O(samples).
+/// Measures ergonomics on the trace of a run. The person is on the parts' side of the least y and looks along
+/// +y. Gravity must point along -z, else the result is empty. The lowest point of the assembled parts touches
+/// the bench, and the person's middle is at the middle of the parts. Rows of the trace with the part at rest
+/// do not count. O(samples).
 VPS_SCENES_API Ergonomics measureErgonomics(const Scene& scene, const std::vector<TraceRow>& trace);
 
 inline constexpr auto kStepErgonomicsFields =
