@@ -410,7 +410,7 @@ TEST(VoxMap, UnusableSettingsAreRefusedWithARemedy) {
     return "";
   };
   const Mesh box = makeBox({0.01, 0.01, 0.01});
-  EXPECT_NE(complaint(box, {0, 4}).find("part 'hub': voxel size"), std::string::npos);
+  EXPECT_NE(complaint(box, {0, 4}).find("part 'hub': the voxel size"), std::string::npos);
   EXPECT_NE(complaint(box, {std::nan(""), 4}).find("voxel size"), std::string::npos);
   EXPECT_NE(complaint(box, {1e-3, 2}).find("band"), std::string::npos);
   EXPECT_NE(complaint(Mesh{}, kSettings).find("no triangles"), std::string::npos);
