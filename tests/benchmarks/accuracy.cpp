@@ -22,9 +22,9 @@ struct Shape {
   bool is_sharp = false;
   Mesh mesh;
   std::function<bool(const Vec3&)> isCounted;  ///< true for points at which samples are taken
-  /// The normal of the smooth surface that the facets approximate. The normals of the facets differ from it
-  /// by up to 0.4 degrees, which is more than the field's error. Empty: the direction to the nearest point of
-  /// the mesh.
+  /// The normal of the smooth surface that the facets approximate. The normals of the facets differ from the
+  /// true normal by up to 0.4 degrees, which is more than the field's error. If this function is empty, the
+  /// true normal is the direction to the nearest point of the mesh.
   std::function<Vec3(const Vec3&)> trueNormal;
 };
 
@@ -49,7 +49,8 @@ Pose askew() {
   return {rotationFromVector({0.3, 0.5, 0.2}), {0.31 * kMm, 0.17 * kMm, 0.23 * kMm}};
 }
 
-/// A function of a point in the shape's own frame, for points and directions of the rotated frame.
+/// Converts a function of a point in the shape's own frame into a function of points and directions of the
+/// rotated frame.
 template <typename NormalOf>
 std::function<Vec3(const Vec3&)> inFrame(NormalOf normalOf) {
   return [=, X_AM = askew()](const Vec3& p) { return Vec3(X_AM.R * normalOf(X_AM.inverse() * p)); };
@@ -129,7 +130,7 @@ AccuracyPoint measured(const Shape& shape, const MeshDistance& exact, double vox
     if (!shape.isCounted(p)) continue;
     const double true_m = exact.signedDistance(p);
     distance_m.push_back(std::abs(map.distance(p) - true_m));
-    // At smaller distances the direction to the nearest point is lost in rounding.
+    // At distances below 1e-3 voxel the direction to the nearest point is lost in rounding.
     if (std::abs(true_m) < 1e-3 * voxel_m) continue;
     const Vec3 n = shape.trueNormal ? shape.trueNormal(p) : Vec3((p - exact.closest(p).q) / true_m);
     const auto angle = [&](Gradient gradient) {

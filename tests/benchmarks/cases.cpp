@@ -9,7 +9,8 @@ namespace {
 constexpr double kMm = 1e-3;
 constexpr int kCheckedSteps = 12;
 
-/// A row that steps through a motion. `patch` > 0: only with so many neighbouring points of the shell.
+/// A row that steps through a motion. If `patch` > 0, the row uses only so many neighbouring points of the
+/// shell.
 struct StepRow {
   Pair pair = Pair::RingOnItself;
   SceneSize size;
@@ -70,12 +71,13 @@ class Rows {
     StepRow row{pair, size_, motion, {.is_exhaustive = true}, true, patch};
     add(name, words, bar_ratio, row);
   }
-  /// bar_ratio is the bar of the row; 0: no bar.
+  /// bar_ratio is the bar of the row; 0 means that the row has no bar.
   void culled(const std::string& name, const std::string& words, double bar_ratio, Pair pair,
               const Motion& motion) {
     add(name, words, bar_ratio, {pair, size_, motion, {}, true, 0});
   }
-  /// 5.4 times the points: a million where the other rows have the paper's load. Only our time is measured.
+  /// A row with 5.4 times the points of the other rows: a million points where the other rows have the
+  /// paper's load. Only our time is measured.
   void million(const std::string& name, const std::string& words, Pair pair, const Motion& motion) {
     SceneSize size = size_;
     size.points = size_.points * 1'000'000 / SceneSize{}.points;

@@ -13,10 +13,10 @@ namespace vps::bench {
 /// The criterion of a row.
 enum class Bar {
   None,
-  RatioAtLeast,  ///< their time / ours
+  RatioAtLeast,  ///< time of the rival / our time
   P99Below_us,
   TimeBelow_us,
-  ShareAtMost,  ///< our bytes / theirs
+  ShareAtMost,  ///< our bytes / bytes of the rival
 };
 
 struct Case {

@@ -54,8 +54,8 @@ Mesh subdivided(const Mesh& mesh) {
   return welded(fine);
 }
 
-/// A peg in a bore of 24 flats. The flats of the plate are subdivided further and further, so that the
-/// surface and the contact stay the same.
+/// A peg in a bore of 24 flats. The flats of the plate are subdivided more and more, so that the surface and
+/// the contact stay the same.
 void timeAgainstTriangles(const std::filesystem::path& dir) {
   std::ofstream out(dir / "triangles.dat");
   out << "# triangles" << kColumns;

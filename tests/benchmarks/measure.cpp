@@ -66,8 +66,9 @@ int affordable(Side& side, const Motion& motion, int first, int wanted, double t
   return std::clamp(static_cast<int>(1e6 * time_limit_s / times.median()), std::min(wanted, 12), wanted);
 }
 
-/// The engine and its rival make the same steps in `kTurns` turns. The caches then hold the data of the other
-/// side, which slows the first step of a turn, so one step is made before the clock starts.
+/// The engine and its rival make the same steps in `kTurns` turns. At the start of a turn the caches hold the
+/// data of the other side, which slows the first step of the turn, so one step is made before the clock
+/// starts.
 class Stretch {
  public:
   Stretch(const StepCase& steps, int repetition) : case_(steps), first_(repetition * steps.steps) {}

@@ -23,7 +23,7 @@ double cpuSeconds();
 /// Wall clock [s].
 double wallSeconds();
 
-/// Limits TBB to one thread while it exists, for us and for OpenVDB.
+/// While an object of this class exists, TBB uses one thread, for us and for OpenVDB.
 class OneThread {
  public:
   OneThread();
@@ -41,8 +41,8 @@ struct StepCase {
   Motion motion;
   SubjectOptions options;
   int steps = 1000;      ///< greatest number of our steps in a repetition
-  int rival_steps = 24;  ///< steps of the rival, spread over the same range of the motion, since it does not
-                         ///< use earlier steps
+  int rival_steps = 24;  ///< steps of the rival, spread over the same range of the motion, since the rival
+                         ///< does not use earlier steps
   double time_limit_s =
       2;  ///< time limit of a repetition for each side; fewer steps are made if they would take longer
   bool with_nano = false;  ///< also times NanoVDB

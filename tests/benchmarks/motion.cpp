@@ -46,7 +46,8 @@ Motion gearMotion(double step_m) {
   constexpr double kBite_m = -0.4e-6;
   const test::GearShape ring = ringShape(1), planet = planetShape(1);
   const double cos_pressure = std::cos(20 * std::numbers::pi / 180);
-  // The gap across a flank is the backlash of one wheel; a rotation closes it by rotation times base radius.
+  // The gap across a flank is the backlash of one wheel; a rotation reduces this gap by rotation times base
+  // radius.
   const double closed_rad =
       (kBacklash_m * cos_pressure + kBite_m) / (test::pitchRadius(planet) * cos_pressure);
   const double tip_m = test::pitchRadius(planet) + kGear_m;

@@ -15,7 +15,7 @@ namespace vps::bench {
 /// Stiffness of every wrench in these benchmarks [N/m^3]; the value is arbitrary.
 inline constexpr double kStiffness_N_per_m3 = 1e12;
 
-/// The answer of either side for a pose, so that they can be compared.
+/// The answer of either side for a pose, so that both answers can be compared.
 struct Answer {
   std::size_t touching = 0;
   double least_m =
@@ -52,8 +52,9 @@ struct RivalFieldSettings {
 std::unique_ptr<RivalField> buildOpenVdb(const Mesh& mesh, const RivalFieldSettings& settings);
 /// Reads a level set that saveVdb() wrote, with the same values as the voxmap.
 std::unique_ptr<RivalField> readOpenVdb(const std::string& file);
-/// A query with an accessor and tools::BoxSampler for each point. With `shared` it reads the eight values
-/// once for distance and gradient; otherwise it reads them again for the gradient of touching points.
+/// A query with an accessor and tools::BoxSampler for each point. With `shared` the query reads the eight
+/// values once for distance and gradient; otherwise the query reads these values again for the gradient of
+/// touching points.
 std::unique_ptr<RivalQuery> openVdbQuery(const RivalField& field, const PointShell& shell, bool shared);
 /// A query of the same field as NanoVDB, with its cached trilinear sampler; null if NanoVDB is not installed.
 std::unique_ptr<RivalQuery> nanoVdbQuery(const RivalField& field, const PointShell& shell);

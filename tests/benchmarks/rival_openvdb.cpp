@@ -98,7 +98,7 @@ class PointLoop : public RivalQuery {
       ++answer.touching;
       const Vec3 gradient = gradientAt(x);
       const double length = gradient.norm();
-      if (!(length > 0)) continue;  // deeper than the band
+      if (!(length > 0)) continue;  // a point that is deeper than the band has no gradient
       const Vec3 f = (kStiffness_N_per_m3 * shell_.area_m2[i] * -distance_m / length) * gradient;
       answer.F_Mo_M.f += f;
       answer.F_Mo_M.tau += (voxel_m_ * x).cross(f);

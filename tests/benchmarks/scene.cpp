@@ -13,8 +13,8 @@
 namespace vps::bench {
 namespace {
 
-/// A shell of some points of another shell. It is written to a file and read back, which is the public way to
-/// make a shell of given points: reading sorts the points and builds their spheres.
+/// A shell of some points of another shell. The shell is written to a file and read back, which is the public
+/// way to make a shell of given points: reading sorts the points and builds their spheres.
 PointShell shellOfSome(const PointShell& shell, const std::vector<bool>& is_kept) {
   const auto count = std::count(is_kept.begin(), is_kept.end(), true);
   const test::TemporaryFolder folder;
@@ -98,7 +98,9 @@ std::shared_ptr<const Scene> sceneOf(Pair pair, const SceneSize& size) {
   static Kept kept;
   if (kept.scene && kept.pair == pair && kept.size == size) return kept.scene;
   const bool has_parts = kept.scene && kept.pair == pair && kept.size.coarser == size.coarser;
-  if (!has_parts) kept.scene.reset();  // released before the next scene is built, since both may be large
+  if (!has_parts)
+    kept.scene.reset();  // the last scene is released before the next scene is built, since both scenes may
+                         // be large
   auto scene = std::make_shared<Scene>();
   if (has_parts)
     *scene = *kept.scene;

@@ -16,7 +16,7 @@ enum class Pair { PegInPlate, PlanetInRing, RodInNut, RingOnItself };
 
 /// The size of the models. The defaults are the sizes of the table; tests of the program use smaller ones.
 struct SceneSize {
-  std::size_t points = 185'030;  ///< the paper's load; the shell has exactly as many
+  std::size_t points = 185'030;  ///< the paper's load; the shell has exactly this number of points
   int voxels = 512;              ///< number of voxels along the longest side of the map's part
   int coarser = 1;               ///< divisor of the meshes' steps; 1 gives about 200,000 triangles
   bool operator==(const SceneSize&) const = default;
@@ -41,15 +41,15 @@ double voxelFor(const Mesh& mesh, int voxels);
 PointShell shellOfSize(const Mesh& mesh, std::size_t points);
 /// A shell of the points from first to first + count of a shell.
 PointShell patchOf(const PointShell& shell, std::size_t first, std::size_t count);
-/// Builds a scene, deterministically; this takes seconds. The last scene is kept, and the next one reuses its
-/// map or shell if they are the same.
+/// Builds a scene deterministically, which takes seconds. The last scene is kept, and the next scene reuses
+/// the map or the shell of the last scene if it is the same.
 std::shared_ptr<const Scene> sceneOf(Pair pair, const SceneSize& size);
 
 /// Pose of the shell's part in the map's part at a step; deterministic, never the same twice in a run.
 using Motion = std::function<Pose(int step)>;
 
-/// A peg that slides in and out of a bore, rotates a little and is pressed to one side. step_m: travel of its
-/// points in each step.
+/// A peg that slides in and out of a bore, rotates a little and is pressed to one side. step_m: travel of the
+/// peg's points in each step.
 Motion pegMotion(double step_m);
 /// A planet wheel that rolls in its ring with one flank in contact.
 Motion gearMotion(double step_m);

@@ -24,7 +24,7 @@ std::vector<std::string> instructionPaths();
 /// the rivals' answers.
 class Subject {
  public:
-  /// Map and shell must outlive it.
+  /// Map and shell must outlive this object.
   Subject(const VoxMap& map, const PointShell& shell, const SubjectOptions& options);
   ~Subject();
   Answer step(const Pose& X_MP);

@@ -31,8 +31,8 @@ std::string describe(const Include& include) {
 /// Headers that only some files may include.
 struct Rule {
   std::string why;
-  std::vector<std::string> headers;  ///< starts of the include's target
-  std::vector<std::string> allowed;  ///< starts of the paths of files that may include them
+  std::vector<std::string> headers;  ///< beginnings of the include's target
+  std::vector<std::string> allowed;  ///< beginnings of the paths of files that may include these headers
 };
 
 std::vector<Rule> rules() {
@@ -115,7 +115,7 @@ class Groups {
   }
 
  private:
-  /// Where a file stands in its folder: <wing>/src/<group>/, <wing>/include/<namespace>/<group>/, each with
+  /// The place of a file in its folder: <wing>/src/<group>/, <wing>/include/<namespace>/<group>/, each with
   /// or without a wing, or in the program's folder cli/<group>/.
   struct Place {
     fs::path file;

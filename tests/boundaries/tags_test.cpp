@@ -36,7 +36,7 @@ std::string textOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Names that a header marks as exported: of functions and of classes.
+/// Names of the functions and classes that a header marks as exported.
 std::vector<std::string> exportedNames(const std::string& header) {
   static const std::regex comment("//[^\n]*"), marked(R"(VPS_(?:[A-Z]+_)?API\s+([^;{}]*))"),
       of_class(R"(^(?:class|struct)\s+(\w+))"), of_function(R"((\w+)\s*\()");
@@ -96,7 +96,7 @@ TEST(Tags, HaveEveryExportedNameInItsNamespace) {
                                                                                : "vps::";
     for (const std::string& name : exportedNames(textOf(header))) {
       ++exported;
-      // A member that is exported by itself has its class between namespace and name.
+      // The tag of a member that is exported by itself has the member's class between namespace and name.
       const bool is_found = std::ranges::any_of(
           tags, [&](const std::string& tag) { return tag.starts_with(space) && tag.ends_with("::" + name); });
       EXPECT_TRUE(is_found) << path << ": " << name;

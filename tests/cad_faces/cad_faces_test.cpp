@@ -81,8 +81,8 @@ Solid ballRace(double R, double groove) {
   return out;
 }
 
-/// A ball with a hole through its middle. Its volume is that of a ball whose diameter is the length of the
-/// hole.
+/// A ball with a hole through its middle. The volume of the drilled ball is that of a whole ball whose
+/// diameter is the length of the hole.
 Solid drilledBall(double R, double r) {
   Solid out;
   const gp_Ax2 along_z(gp_Pnt(0, 0, -2 * R), gp_Dir(0, 0, 1));

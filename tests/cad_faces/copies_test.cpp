@@ -123,8 +123,8 @@ TEST_F(Copies, AreNoneOfAMirrorImageOrOfAnotherSize) {
     return import::tessellateAll(solids, tenMicrometres(), 1000, {}).shapes[i].number;
   };
   EXPECT_EQ(number(0), 0U);
-  EXPECT_EQ(number(1), 1U);  // of a mirror image
-  EXPECT_EQ(number(2), 2U);  // a hole 2 um wider
+  EXPECT_EQ(number(1), 1U);  // a mirror image has a number of its own
+  EXPECT_EQ(number(2), 2U);  // so has a plate whose hole is 2 um wider
   EXPECT_EQ(number(3), 0U);
 }
 
@@ -145,7 +145,7 @@ TEST_F(Copies, InOtherProcessesHaveTheBitsOfThoseMadeHere) {
   }
 }
 
-constexpr std::size_t kCopies = 3;  // on one core too
+constexpr std::size_t kCopies = 3;  // number of worker processes, on a machine with one core too
 
 std::vector<std::size_t> upTo(std::size_t n) {
   std::vector<std::size_t> order(n);

@@ -140,7 +140,7 @@ TEST_F(DamagedEntities, WhatIsNoGeometryIsReadWithARemark) {
       {"PROPERTY_DEFINITION_REPRESENTATION(#99999,#99998);", true},
       {"CALENDAR_DATE(2020,1.5,'x');", true},
       {"PERSON(1,2,3,$,$,$);", true},
-      {"ADVANCED_FACE('',(#99999),#99998,.F.);", true},  // it belongs to no shape
+      {"ADVANCED_FACE('',(#99999),#99998,.F.);", true},  // this face belongs to no shape
       {"CARTESIAN_POINT('',('here'));", true},
       {"SOMETHING_THAT_NOBODY_KNOWS('a',#99999,3.);", true},
       {"(SOMETHING_ELSE('a')THAT_NOBODY_KNOWS(3.));", false},

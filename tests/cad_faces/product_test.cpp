@@ -89,7 +89,7 @@ TEST_F(Product, OfTwelveSolidsIsOneGroupBesideItsSocket) {
   TopoDS_Compound solids;
   const BRep_Builder builder;
   builder.MakeCompound(solids);
-  for (int i = 0; i < 12; ++i) builder.Add(solids, box(2, 2 * i));  // each solid touches the next
+  for (int i = 0; i < 12; ++i) builder.Add(solids, box(2, 2 * i));  // each solid touches the next solid
   const TDF_Label plug = part(solids, "plug"), socket = part(box(30), "socket"), all = assembly("product");
   place(all, socket, gp_Vec(0, 0, 0));
   place(all, plug, gp_Vec(0, 0, 40));
@@ -99,7 +99,7 @@ TEST_F(Product, OfTwelveSolidsIsOneGroupBesideItsSocket) {
   const std::vector<PartGroup> groups = partGroups(cad, {});
   ASSERT_EQ(groups.size(), 2U);
   EXPECT_EQ(groups[0].name, "plug");
-  EXPECT_EQ(groups[1].name, "plug_2_2");  // "plug_2" is a solid of the first
+  EXPECT_EQ(groups[1].name, "plug_2_2");  // "plug_2" is a solid of the first group
   for (const PartGroup& group : groups) EXPECT_EQ(group.parts.size(), 12U);
   EXPECT_EQ(cad.parts[0].within, (Names{"product", "socket"}));
   EXPECT_EQ(partGroups(cad, {.is_proposed = false, .names = {"product"}})[0].parts.size(), 25U);

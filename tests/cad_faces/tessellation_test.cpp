@@ -74,7 +74,8 @@ TEST(Tessellation, PlatesWithAnyNumberOfHolesAreRight) {
       const Tessellation found = compared(shape, settings(), 1000);
       EXPECT_TRUE(found.isTrusted()) << holes << " " << radius_mm << ": " << inWords(found, settings());
       EXPECT_EQ(found.open_edges, 0U);
-      const double volume_mm3 = 1e4 - holes * 5 * std::numbers::pi * radius_mm * radius_mm;  // of the faces
+      const double volume_mm3 =
+          1e4 - holes * 5 * std::numbers::pi * radius_mm * radius_mm;  // volume of the exact plate
       const double slack_mm3 = 3 * kDeflection_mm * holes * 5 * 2 * std::numbers::pi * radius_mm;
       EXPECT_NEAR(massProperties(found.mesh).volume_m3, volume_mm3, slack_mm3 + 1e-6);
     }

@@ -136,8 +136,8 @@ TEST(BaseCalibration, WithNoiseItsErrorMatchesTheStatedDeviation) {
     EXPECT_GT(found.sigma_m, 0);
     const double share_m = errorOf_m(found.parameters, truth) / found.sigma_m;
     const double share_rad = errorOf_rad(found.parameters, truth) / found.sigma_rad;
-    // Three directions have at most one deviation each: the sum exceeds 5 in one of 1e5 runs (chi square of
-    // three).
+    // Each of three directions has at most one standard deviation, so their root sum of squares exceeds 5 in
+    // one of 1e5 runs (chi square of three).
     EXPECT_LT(share_m, 5);
     EXPECT_LT(share_rad, 5);
     mean_square_m += share_m * share_m / kRuns;
@@ -167,7 +167,7 @@ TEST(BaseCalibration, CorrectsTheReadingsOfTheRealEncoders) {
   RecordProperty("before_um", std::to_string(1e6 * before_m));
   RecordProperty("after_um", std::to_string(1e6 * after_m));
   EXPECT_GT(before_m, 5e-3) << "nothing to calibrate";
-  EXPECT_LT(after_m, truth.resolution_m / 2);  // below the encoders' resolution
+  EXPECT_LT(after_m, truth.resolution_m / 2);  // the remaining error is below the encoders' resolution
 }
 
 TEST(BaseCalibration, ReportsWhyItCannotSolve) {

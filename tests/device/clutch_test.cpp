@@ -110,12 +110,12 @@ TEST(Clutch, OpeningFreesTheHandWithoutAForceJumpAndThePartStays) {
   for (int i = 0; i < 101; ++i) rig.tick(Vec3(0.1, 0, 0.1));
   EXPECT_NEAR(rig.device.written.f.z(), -6, 1e-9);
   EXPECT_LT(rig.proxy().norm(), 1e-12);
-  rig.tick(Vec3(0.101, 0, 0.1));  // moves it again, from the same pose
+  rig.tick(Vec3(0.101, 0, 0.1));  // moves the handle again, from the same pose
   EXPECT_NEAR(rig.proxy().x(), 1e-3, 1e-12);
 }
 
-// A hand that repeatedly rises while the weight fades in and falls while it fades out: fading only the force
-// would give it energy.
+// A hand that repeatedly rises while the weight fades in and falls while the weight fades out: fading only
+// the force would give the hand energy.
 double madeByPumping_J(double scale, double force_scale) {
   LoopSettings settings = Hanging::settings();
   settings.map.scale = scale;
@@ -167,7 +167,7 @@ TEST(Clutch, IndexingMovesAPartByAMetreWithADeviceOfFourTenths) {
   // Two changes per tick: the fade of the weight, and the spring to a part one tick behind, K a T^2 with
   // a <= 2.4 m/s^2.
   EXPECT_LT(rig.most_jump_N, 6 * kPeriod_s / 0.1 + 2000 * 2.4e-6);
-  EXPECT_LT(rig.loop.passivity().injected_J, 1e-9);  // level travel: only rounding
+  EXPECT_LT(rig.loop.passivity().injected_J, 1e-9);  // the travel is level, so the energy is only rounding
 }
 
 TEST(Clutch, HandOverToAnotherPartNeitherJumpsNorReturnsTheSpringsEnergy) {

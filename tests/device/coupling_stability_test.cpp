@@ -36,7 +36,8 @@ TEST(SampledWall, RequiresExactlyTheDampingOfTheConditionWithoutDelayOrWithoutDa
     const double ratio = passiveDamping(w) / passiveDampingFormula(w);
     EXPECT_LE(ratio, 1 + 1e-12) << w.K_N_per_m << " " << w.B_Ns_per_m << " " << w.delay_s;
     if (w.B_Ns_per_m == 0 || w.delay_s == 0) {
-      // The worst is at standstill; the grid's first frequency, pi/200, misses it by (5.5 pi/200)^2 / 6.
+      // The worst case is standstill; the grid's first frequency, pi/200, misses the worst case by (5.5
+      // pi/200)^2 / 6.
       EXPECT_GT(ratio, 0.998);
     }
   });
@@ -44,7 +45,7 @@ TEST(SampledWall, RequiresExactlyTheDampingOfTheConditionWithoutDelayOrWithoutDa
 
 TEST(SampledWall, WithDelayAndDamperRequiresAtMostTheSumAndAtLeastTheGreaterOfTheTwo) {
   // Spring and damper are at their worst at different frequencies, so the sum is safe and not sharp: at one
-  // tick of delay and B = K T / 2 only 83% of it is needed.
+  // tick of delay and B = K T / 2 only 83% of the sum is needed.
   double least = 1;
   forEachWall([&](const SampledWall& w) {
     const double need = passiveDamping(w);
@@ -76,7 +77,7 @@ TEST(SampledWall, AForceThatChangesWithinThePeriodRequiresUpToSixPercentMore) {
     const SampledWall w{2000, 1, 1e-3, ticks * 1e-3};
     for (const int index : {1, 20, 130, 200}) {
       const double b = passiveDampingAt(w, sineAngle_rad(index));
-      // At that damping no energy is generated; the rest is rounding of 400 terms of K x^2 = 2 mJ.
+      // At the damping b no energy is generated; the rest is rounding of 400 terms of K x^2 = 2 mJ.
       EXPECT_NEAR(energyMade_J(w, index, b), 0, 1e-14 * 400) << ticks << " " << index;
       EXPECT_GT(energyMade_J(w, index, 0.99 * b), 1e-9);
     }
@@ -100,15 +101,15 @@ TEST(Gains, DerivedGainsArePassiveAtEveryFrequencyForEveryDeviceRateAndDelay) {
             const CouplingGains gains = deriveGains(limits, timing);
             const SampledWall w{gains.k_N_per_m, gains.b_Ns_per_m, 1 / haptic_hz,
                                 couplingDelay_s(timing) + limits.delay_s};
-            // 0.8 * 0.8 b + 0.2 b by the formula, 6% more where forces change within a period.
+            // The formula gives 0.8 * 0.8 b + 0.2 b; 6% more is needed where forces change within a period.
             EXPECT_LE(passiveDamping(w), 0.9 * damping);
           }
 }
 
 TEST(SampledWall, OscillatesAboveTheStiffnessOfTheFormula) {
-  // bw = K sin(w t), so the edge is above the formula by (w t)^2 / 6, t = T/2 + t_d, w = sqrt(K / m); the
-  // damper's difference lags by half a period more, which adds B w^2 T / 2 to the inertia's side. Masses are
-  // such that w t stays below a third: what a handle in a hand has.
+  // At the edge of stability bw = K sin(w t), so the edge is above the formula by (w t)^2 / 6, t = T/2 + t_d,
+  // w = sqrt(K / m); the damper's difference lags by half a period more, which adds B w^2 T / 2 to the
+  // inertia's side. Masses are such that w t stays below a third, as for a handle in a hand.
   for (const double T : {0.25e-3, 1e-3, 2e-3})
     for (const double b : {2.0, 5.0, 10.0})
       for (const double B : {0.0, 0.2 * b, b})
@@ -161,8 +162,8 @@ TEST(Coupling, DerivedGainsSettleOnTheArmAndTwoToThreeTimesTheirStiffnessOscilla
         const Unrest swing = pressOnWall(device, stiffer, press);
         (swing.late_m > swing.early_m ? high : low) = stiffer.k_N_per_m;
       }
-      // The stability formula, with the arm's own damping there; (w t)^2 / 6 and the plant's sixteenth of a
-      // period, a 24th of t, lie above it.
+      // The stability formula, with the arm's own damping along this direction; (w t)^2 / 6 and the plant's
+      // sixteenth of a period, a 24th of t, lie above it.
       const double t_s = 1.5 / rate_hz, b = dampingOfTheArm(device, along_D) + gains.b_Ns_per_m;
       EXPECT_NEAR(low * t_s / b, 1, 0.05) << rate_hz;
       EXPECT_GT(low / gains.k_N_per_m, 1.5) << rate_hz;

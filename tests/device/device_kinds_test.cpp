@@ -21,7 +21,7 @@ TEST(DeviceKinds, NamesAreUniqueAndEachIsFoundByItsName) {
     EXPECT_FALSE(kind.description.empty()) << kind.name;
     EXPECT_NE(deviceKindNames().find(kind.name), std::string::npos) << kind.name;
   }
-  // Scene files have these names.
+  // Scene files name the kinds of devices by these words.
   for (const char* known : {"dual_arm", "ideal_dual_arm", "space_mouse", "game_controller", "mouse"})
     EXPECT_NE(findDeviceKind(known), nullptr) << known;
   EXPECT_EQ(findDeviceKind("spoon"), nullptr);

@@ -17,7 +17,8 @@
 namespace vps::device {
 namespace {
 
-constexpr double kHalf_m = 10e-3;  // of the cube in hand; it touches the wall z <= 0 with its centre there
+constexpr double kHalf_m = 10e-3;  // half the edge of the cube in hand; the cube touches the wall z <= 0 when
+                                   // its centre is at this height
 constexpr double kMass_kg = 0.05;
 constexpr double kTick_s = 1e-3;
 
@@ -51,7 +52,7 @@ const WallModels& wall() {
 }
 
 /// Reference of a physics engine: the cube does not rotate, is coupled to the proxy, and the wall is rigid.
-/// Backward Euler, axis by axis.
+/// Integrates each axis by backward Euler.
 struct CubePhysics {
   CouplingState part{Pose::translation(Vec3(0, 0, kHalf_m + 2e-3)), {}, 0, true};
 
@@ -70,14 +71,14 @@ struct CubePhysics {
 };
 
 struct Motion {
-  Vec3 p = Vec3::Zero(), v = Vec3::Zero();  // of the handle, from its start
+  Vec3 p = Vec3::Zero(), v = Vec3::Zero();  // displacement and velocity of the handle from its start
 };
 
 struct Played {
   std::vector<Vec3> forces_N;  // by tick
   double worst_normal_N = 0;   // |force - K depth - b v|, once the reference has settled after touching
-  double worst_side_N = 0;     // sideways, where the reference is zero
-  double greatest_step_N = 0;  // from tick to tick
+  double worst_side_N = 0;     // greatest sideways force, which is zero in the reference
+  double greatest_step_N = 0;  // greatest change of the force from tick to tick
   LocalContact::Report local;
 };
 
@@ -121,13 +122,13 @@ Played play(const std::function<Motion(double)>& motion, int ticks, bool has_loc
   return played;
 }
 
-// Down onto the wall at 50 mm/s, 3 mm into it (3.5 N), and rest there.
+// Moves down onto the wall at 50 mm/s and 3 mm into the wall (3.5 N), and then rests.
 Motion press(double t_s) {
   const double z_m = std::min(50e-3 * t_s, 5e-3);
   return {Vec3(0, 0, -z_m), z_m < 5e-3 ? Vec3(0, 0, -50e-3) : Vec3(Vec3::Zero())};
 }
 
-// Down onto the wall, then along it at 50 mm/s.
+// Moves down onto the wall, and then along the wall at 50 mm/s.
 Motion slide(double t_s) {
   Motion m = press(t_s);
   const double x_m = 50e-3 * std::max(0.0, t_s - 0.2);
@@ -148,7 +149,7 @@ TEST(LocalContact, PressedOnAWallThePartStopsAtTheDepthOfTheContactStiffness) {
     for (int i = 0; i < 40; ++i) part = local.follow(gains, proxy, snapshot, kTick_s);
   }
   // Contact and coupling are springs in series: depth k A = K (3 mm - depth), with the area A of the face's
-  // points, those of the rim included. The voxmap's nodes are rounded to half a quantum.
+  // points, including the points of the rim. The voxmap's nodes are rounded to half a quantum.
   double area_m2 = 0;
   for (std::uint32_t i = 0; i < wall().shell.size(); ++i)
     if (wall().shell.points[i].z() < -kHalf_m + 1e-9) area_m2 += wall().shell.area_m2[i];
@@ -222,7 +223,8 @@ TEST(LocalContact, WithSlowPhysicsSlidingHasNoSawTooth) {
   const Played jagged = play(slide, 10, false, 0.3, 0.6), smooth = play(slide, 10, true, 0.3, 0.6);
   RecordProperty("side_100Hz_N", std::to_string(jagged.worst_side_N));
   RecordProperty("side_100Hz_local_N", std::to_string(smooth.worst_side_N));
-  // Held for ten periods at 50 mm/s the part lags by 0.5 mm, which is 0.58 N; nine tenths come in one step.
+  // Held for ten periods at 50 mm/s the part lags by 0.5 mm, which is 0.58 N; nine tenths of this force come
+  // in one step.
   EXPECT_GT(jagged.greatest_step_N, 0.4);
   EXPECT_LT(smooth.worst_side_N, jagged.worst_side_N / 4);
   EXPECT_LT(smooth.greatest_step_N, jagged.greatest_step_N / 4);
@@ -263,7 +265,8 @@ TEST(LocalContact, HoldsThePartWhenPhysicsStopsOrContactsAreTooMany) {
   LocalContact local;
   local.take(wall().part());
   CouplingState part;
-  for (int i = 0; i < 52; ++i) part = local.follow(gains, proxy, snapshot, kTick_s);  // 50 ms, and to hold
+  for (int i = 0; i < 52; ++i)
+    part = local.follow(gains, proxy, snapshot, kTick_s);  // the part follows for 50 ms and is then held
   const Vec3 p = part.X_W.p;
   for (int i = 0; i < 100; ++i) part = local.follow(gains, proxy, snapshot, kTick_s);
   EXPECT_LT((part.X_W.p - p).norm(), 1e-12);

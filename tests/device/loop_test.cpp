@@ -145,7 +145,7 @@ TEST(HapticLoop, InjectedEnergyIsDissipatedByTheDevicesSpareDamping) {
   loop.tick();
   EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
   loop.observeStoredEnergy(0.5, 0);  // half a joule without a source
-  loop.tick();                       // accounts for it
+  loop.tick();                       // accounts for the energy
   loop.tick();                       // and damps
   EXPECT_NEAR(loop.passivity().injected_J, 0.5, 1e-12);
   EXPECT_NEAR(device.written.f.x(), -0.1 * (5 - 2000 * 0.5e-3 - 1), 1e-12);
@@ -160,7 +160,7 @@ TEST(HapticLoop, EnergyAccountSplitsWorkAndFindsNoneGeneratedInASpring) {
   port.physics.write({partAt(Pose{}), 0, {}, {}});
   const double travel_m = 5e-3;
   const int n = 500;
-  for (int i = 0; i <= 2 * n; ++i) {  // out and back
+  for (int i = 0; i <= 2 * n; ++i) {  // the handle moves out and back
     const double x = travel_m * (i <= n ? i : 2 * n - i) / n;
     device.sample.X_DH.p.x() = x;
     loop.tick();
@@ -175,7 +175,7 @@ TEST(HapticLoop, EnergyAccountSplitsWorkAndFindsNoneGeneratedInASpring) {
 }
 
 TEST(HapticLoop, TheErrorByQuantisationIsWithinItsBound) {
-  const double step_m = 0.1e-3;  // readings are off by half of it at the most
+  const double step_m = 0.1e-3;  // readings are off by at most half a step
   for (const double rate_rad_s : {1.0, 7.0, 40.0}) {
     Puppet device;
     device.known.resolution_m = 0.5 * step_m;
@@ -186,7 +186,7 @@ TEST(HapticLoop, TheErrorByQuantisationIsWithinItsBound) {
     double true_J = 0, x_before_m = 0, greatest_J = 0;
     for (int i = 0; i < 3000; ++i) {
       const double x_m = 2e-3 * std::sin(rate_rad_s * i * 1e-3);
-      true_J += device.written.f.x() * (x_m - x_before_m);  // written acts until the next
+      true_J += device.written.f.x() * (x_m - x_before_m);  // the written force acts until the next tick
       x_before_m = x_m;
       device.sample.X_DH.p.x() = step_m * std::round(x_m / step_m);
       loop.tick();
@@ -199,7 +199,7 @@ TEST(HapticLoop, TheErrorByQuantisationIsWithinItsBound) {
   }
 }
 
-// Moves the handle to x_m in one tick, with this energy stored in the scene.
+// Moves the handle to x_m in one tick, with the energy stored_J stored in the scene.
 void lead(HapticLoop& loop, Puppet& device, double x_m, double stored_J) {
   device.sample.X_DH.p.x() = x_m;
   loop.tick();
@@ -219,8 +219,8 @@ TEST(HapticLoop, EarlyDissipationDoesNotOffsetLaterGeneration) {
   lead(loop, device, -x_m, 0);
   EXPECT_NEAR(loop.passivity().balance_J, -k * x_m * x_m, 1e-12);
   EXPECT_EQ(loop.passivity().injected_J, 0);
-  // Now half of that energy appears without a source. The greatest balance over time is still the initial
-  // zero.
+  // Half of the dissipated energy now appears without a source. The greatest balance over time is still the
+  // initial zero.
   lead(loop, device, -x_m, 0.5 * k * x_m * x_m);
   EXPECT_LT(loop.passivity().balance_J, 0);
   EXPECT_NEAR(loop.passivity().injected_J, 0.5 * k * x_m * x_m, 1e-12);
@@ -273,7 +273,7 @@ TEST(HapticLoop, EnergyStoredWhenATickAgoWasAnsweredIsBalancedAgainstTheWorkUnti
     device.sample.time_s = 1e-3 * i;
     loop.tick();
   }
-  const double hold_J = 0.5 * k * travel_m * travel_m / n;  // as without delay
+  const double hold_J = 0.5 * k * travel_m * travel_m / n;  // the same energy as without delay
   EXPECT_NEAR(loop.passivity().injected_J, 2 * hold_J, 1e-9);
 }
 

@@ -67,7 +67,7 @@ TEST(Mcap, WhatIsWrittenReadsBack) {
 }
 
 TEST(Mcap, WritesTheRecordLayoutOfTheSpecification) {
-  // Worked out by hand from the specification's tables for a file with one message.
+  // The expected bytes are worked out by hand from the specification's tables for a file with one message.
   std::string bytes;
   McapWriter writer([&](std::string_view piece) { bytes += piece; }, "", "");
   const std::uint16_t channel = writer.addChannel({0, 0, "t", "", {}});
@@ -86,7 +86,7 @@ TEST(Mcap, WritesTheRecordLayoutOfTheSpecification) {
   EXPECT_EQ(at(51 + 9 + 72 + 1), 22);
   EXPECT_EQ(at(51 + 9 + 72 + 31), 0x0f);
   const std::size_t summary = 51 + 9 + 72 + 31 + 13;
-  EXPECT_EQ(at(summary), 0x04);  // no schema, so the channel's copy comes first
+  EXPECT_EQ(at(summary), 0x04);  // the file has no schema, so the summary begins with the copy of the channel
   EXPECT_EQ(bytes.substr(bytes.size() - 8), bytes.substr(0, 8));
   const std::size_t footer = bytes.size() - 8 - 29;
   EXPECT_EQ(at(footer), 0x02);

@@ -23,7 +23,7 @@ TEST(Metronome, BeatsAtMultiplesOfThePeriodHoweverLongTheWorkTakes) {
     EXPECT_EQ(beat.due_ns, 5'000'000 + i * kPeriod_ns) << "no drift";
     EXPECT_EQ(beat.woke_ns, beat.due_ns);
     EXPECT_EQ(beat.periods, 1);
-    clock.now += i % 7 * 150;  // at most 900 of 1000
+    clock.now += i % 7 * 150;  // the work takes at most 900 ns of the period of 1000 ns
   }
 }
 
@@ -42,7 +42,7 @@ TEST(Metronome, AfterAMissedPeriodContinuesAtTheNextBoundaryWithoutBursts) {
   beat = metronome.wait();
   EXPECT_EQ(beat.due_ns, 6000);
   EXPECT_EQ(beat.periods, 1);
-  clock.now += 1000;  // exactly up to the boundary is in time
+  clock.now += 1000;  // work that ends exactly at the boundary is in time
   EXPECT_EQ(metronome.wait().due_ns, 7000);
 }
 

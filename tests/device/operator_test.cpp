@@ -82,8 +82,8 @@ TEST(Sight, SameSeedSameErrorsOtherSeedOthers) {
 struct PegWorld {
   double mass_kg = 0.2, clear_m = 0.2e-3, bottom_m = -0.02;
   bool has_bottom = true;
-  double friction_N = 0;  ///< within a millimetre of the bottom's place
-  double channel_m = 0;   ///< at its bottom the hole goes on so far along y, 0.2 mm high, to a wall
+  double friction_N = 0;  ///< friction of the peg within a millimetre of `bottom_m`
+  double channel_m = 0;   ///< length of a channel, 0.2 mm high, from the hole's bottom along y to a wall
   Vec3 weight_W = Vec3(0, 0, -0.2 * 9.81);
   CouplingState part{Pose{}, Twist{}, 0, true};
 
@@ -116,7 +116,7 @@ struct PegWorld {
 struct Mounting {
   OperatorPhase phase = OperatorPhase::Idle;
   double time_s = 0, peak_N = 0, end_N = 0, error_m = 0, along_m = 0;
-  int retries = 0, most_retries = 0;  ///< at the end, and at any time
+  int retries = 0, most_retries = 0;  ///< number of retries at the end, and the greatest number at any time
   std::vector<double> path;
   std::vector<OperatorPhase> phases;
 };
@@ -200,7 +200,7 @@ TEST(VirtualOperator, MountsAPegThatHasABottom) {
   EXPECT_EQ(run.phase, OperatorPhase::Done) << toText(run.phase) << " after " << run.time_s << " s";
   EXPECT_LE(run.error_m, 0.25e-3);
   EXPECT_LT(run.time_s, 12);
-  EXPECT_LT(run.end_N, 3) << "releases with a relaxed spring";  // the part's weight is 2 N
+  EXPECT_LT(run.end_N, 3) << "releases with a relaxed spring";  // the part's weight of 2 N remains
   const std::vector<OperatorPhase> order{OperatorPhase::Reach, OperatorPhase::Insert, OperatorPhase::Press,
                                          OperatorPhase::Done};
   EXPECT_EQ(run.phases, order);
@@ -223,7 +223,7 @@ TEST(VirtualOperator, FindsTheHoleFromFiveSeedsWithATightMouth) {
     const Mounting run = mountPeg(habits, world, 30);
     EXPECT_EQ(run.phase, OperatorPhase::Done) << "seed " << seed << ", " << run.retries << " retries";
     EXPECT_LE(run.peak_N, habits.force_limit_N + 3)
-        << "seed " << seed;  // the limit, the weight, and the damper
+        << "seed " << seed;  // the bound is the force limit plus weight and damper
     RecordProperty("seed_" + std::to_string(seed),
                    std::to_string(run.time_s) + " s, retries " + std::to_string(run.retries));
   }
@@ -279,7 +279,8 @@ TEST(VirtualOperator, PlacesWhatNothingGuidesOnlyAsWellAsItSees) {
 // The hand pushes the part past its target, and friction holds the part on the way back. The delayed pictures
 // of the moving part once counted as pictures of the part at its target, and the hand released it 3.6 mm off.
 TEST(VirtualOperator, PushesOnWhereFrictionHoldsWhatNothingStops) {
-  constexpr double kBound = 4;  // errors of sight; assumed of a hand that works against friction
+  constexpr double kBound =
+      4;  // in errors of sight; this value is assumed for a hand that works against friction
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     OperatorHabits habits;
     habits.seed = seed;

@@ -33,13 +33,14 @@ TEST(RateShare, IsZeroInTheDeadZoneContinuousAtItsEdgeAndOneAtTheEnd) {
   EXPECT_EQ(rateShare(1, settings), 1);
   EXPECT_EQ(rateShare(-7, settings), -1);
   EXPECT_EQ(rateShare(std::nan(""), settings), 0);
-  EXPECT_DOUBLE_EQ(rateShare(0.55, settings), 0.25);  // half way from the edge to the end, squared
+  // The deflection is half way from the edge to the end, and the share is its square.
+  EXPECT_DOUBLE_EQ(rateShare(0.55, settings), 0.25);
 }
 
 TEST(RateControl, FullDeflectionMovesAtFullSpeedAndStopsOnRelease) {
   RateControl control;
   const DeviceSample moved = held(control, pushed(0, 1, 0), 2);
-  EXPECT_NEAR(moved.X_DH.p.y(), 0.08 * 2, 2000 * 1e-17);  // one rounding of 0.1 a tick
+  EXPECT_NEAR(moved.X_DH.p.y(), 0.08 * 2, 2000 * 1e-17);  // the error is one rounding of 0.1 per tick
   EXPECT_NEAR(moved.V_DH.v.y(), 0.08, 1e-12);
   const DeviceSample still = held(control, pushed(0.05, -0.05, 0), 1, 2);
   EXPECT_EQ(still.X_DH.p, moved.X_DH.p);

@@ -136,7 +136,7 @@ TEST(Recording, CutAtAnyByteItIsReadUpToTheCutAndReportsIt) {
       kept = now;
       ++opened;
     } catch (const LoadError& error) {
-      ASSERT_EQ(opened, 0u) << length << error.what();  // only while the head is incomplete
+      ASSERT_EQ(opened, 0u) << length << error.what();  // a file is refused only while its head is incomplete
       EXPECT_EQ(std::string(error.what()).find("run.mcap: "), 0u);
     }
   }
@@ -335,7 +335,7 @@ TEST(Recording, DrivesALoopToTheSameWrenches) {
   TappedDevice tapped(device, check);
   hold(tapped, 1000, 400);
   EXPECT_EQ(check.departure(), "");
-  EXPECT_EQ(check.equal(), 801u);  // a read to grasp, then 400 of each
+  EXPECT_EQ(check.equal(), 801u);  // one read for the grasp, then 400 reads and 400 writes
   EXPECT_EQ(check.left(), 0u);
 }
 

@@ -86,7 +86,7 @@ TEST(SpiralSearch, LeadsAPartThatFrictionHolds) {
 }
 
 // The part was backed off to before its hole, and sight has corrected its position since: it drops into the
-// hole while it is lowered, past the depth of the first touch. The search is then over.
+// hole while it is lowered, past the depth of the first touch. The search ends when the part drops.
 TEST(SpiralSearch, EndsWhereThePartDropsWhileItIsLowered) {
   Situation situation;
   situation.mouth_m = -14e-3;
@@ -110,8 +110,8 @@ constexpr double kTurn_rad = 2 * std::numbers::pi;
 /// meet it drops onto the thread. `s` is the nut's turn in the direction that screws it on.
 struct ThreadWorld {
   double pitch_m = 2e-3;
-  double drop_m = 0.5e-3;       ///< 0: nothing to feel
-  double ends_meet_rad = -2.5;  ///< at this angle and every whole turn from it
+  double drop_m = 0.5e-3;       ///< height of the drop; 0: the hand feels no drop
+  double ends_meet_rad = -2.5;  ///< the threads' ends meet at this angle plus any number of whole turns
   double along_share = 1;       ///< advance per turn, as a share of the pitch; 0: the thread does not catch
   double play_m = 0.2e-3;
   double target_m = -3e-3;  ///< height
@@ -137,8 +137,8 @@ struct ThreadWorld {
 
 struct Screwed {
   OperatorPhase phase = OperatorPhase::Idle;
-  double height_m = 0;      ///< of the nut beyond its target
-  double turned_rad = 0;    ///< in the direction that screws it on, at the end
+  double height_m = 0;      ///< height of the nut relative to its target
+  double turned_rad = 0;    ///< turn of the nut at the end, in the direction that screws the nut on
   double drop_rad = 0;      ///< angle at which ScrewOn first began
   double farthest_rad = 0;  ///< turn of the handle from the middle of its range
   int retries = 0, grips = 0;
@@ -236,7 +236,7 @@ TEST(Screw, TheHandleStaysWithinItsRange) {
   // The nut turns 2.6 rad back and 8.8 rad on; the first stroke is half the handle's range, and a stroke
   // after a change of direction is shorter.
   EXPECT_NEAR(run.grips, (2.6 - 0.7) / 1.4 + 8.8 / 1.4, 1.5);
-  EXPECT_LT(run.farthest_rad, 0.7 + 0.1);  // what the hand's lag adds at 1.2 rad/s
+  EXPECT_LT(run.farthest_rad, 0.7 + 0.1);  // 0.1 rad is the lag of the hand at 1.2 rad/s
   EXPECT_EQ(screwOn({}, {.pitch_m = 2e-3}).grips, 0);
 }
 

@@ -12,7 +12,7 @@ namespace vps::dynamics {
 
 namespace {
 
-constexpr double kModule_m = 2e-3, kBacklash_m = 0.05e-3;  // of each gear
+constexpr double kModule_m = 2e-3, kBacklash_m = 0.05e-3;  // module and backlash of each gear
 constexpr int kDriver = 20, kDriven = 30;
 constexpr double kBrake_Nm = 1;
 

@@ -71,7 +71,8 @@ HeapResult dropHeap(const SceneSettings& settings) {
   result.bodies = settings.is_short ? 10 : 50;
   std::vector<Placed> parts;
   for (int i = 0; i < result.bodies; ++i) {
-    // Two by two in layers, each at another orientation; multiples of the golden angle do not repeat.
+    // Parts lie two by two in layers, each part at another orientation; multiples of the golden angle do not
+    // repeat.
     const double angle_rad = 2.399963 * i;
     const Vec3 at(i & 1 ? 20e-3 : -20e-3, i & 2 ? 20e-3 : -20e-3, 25e-3 + 35e-3 * (i / 4));
     const Mat3 R = rotationFromVector(Vec3(std::cos(angle_rad), std::sin(angle_rad), 0.3) * (0.2 + 0.11 * i));

@@ -12,7 +12,7 @@ namespace vps::dynamics {
 
 namespace {
 
-constexpr double kClearance_m = 0.1e-3;  // radial, as of a 6H nut on a 6g bolt
+constexpr double kClearance_m = 0.1e-3;  // radial clearance, as of a 6H nut on a 6g bolt
 
 test::ThreadShape threadOf(const NutSize& size, int columns) {
   test::ThreadShape thread;

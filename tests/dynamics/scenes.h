@@ -22,7 +22,7 @@ struct PegDrop {
   double clearance_m = 50e-6;
   double offset_m = 0.2e-3;  ///< of the peg's lower end from the bore's axis
   double tilt_rad = 8.7e-3;  ///< half a degree
-  double height_m = 1e-3;    ///< of its lower end above the mouth
+  double height_m = 1e-3;    ///< height of the peg's lower end above the mouth
   double friction = 0.15;
 };
 
@@ -30,7 +30,7 @@ struct PegDropResult {
   double height_error_m = 0;  ///< of the lower end above the seat, at the end
   double deepest_m = 0;       ///< greatest penetration during fall and rest
   double jitter_m_s = 0;      ///< greatest speed of any point in the last 2 s (short: 0.4 s)
-  double drift_m = 0;         ///< in the same time
+  double drift_m = 0;         ///< drift in the last 2 s (short: 0.4 s)
   double step_ms = 0;         ///< mean over the steps with contact
   double seated_s = 0;        ///< time at which the peg came within 10 um of its seat; -1: never
   [[nodiscard]] bool isSeated() const { return seated_s >= 0; }
@@ -58,7 +58,7 @@ struct HeavyBlock {
 
 struct HeavyBlockResult {
   double deepest_m = 0;        ///< greatest penetration, of peg in bore and of block in peg
-  double final_m = 0;          ///< the same at the end
+  double final_m = 0;          ///< penetration at the end
   double energy_gained_J = 0;  ///< greatest increase of kinetic plus potential energy since the start
   double kinetic_J = 0;        ///< greatest kinetic energy in the last half second
   double peg_height_m = 0;     ///< of the peg over its seat at the end
@@ -100,7 +100,7 @@ const PartMesh& rodPart(const NutSize& size, int columns = 384);
 struct NutRunResult {
   double acceleration_m_s2 = 0;  ///< measured along the axis, over the first turn
   double theory_m_s2 = 0;        ///< g / (1 + I / (m r^2)), r = pitch / 2 pi, I of the mesh
-  double advance_m = 0;          ///< in one turn
+  double advance_m = 0;          ///< advance of the nut in one turn
   double tilt_rad = 0;           ///< greatest angle between the axes of nut and rod
   double turns = 0;              ///< in the time simulated
   double deepest_m = 0;          ///< greatest penetration, measured every 50 ms
@@ -181,7 +181,7 @@ struct ProxyResult {
   double held_m = 0;       ///< height of the part in hand above the plate that stops it, at the end
 };
 /// A kinematic proxy with the part's own shape is coupled to a part in hand and moved down through a part at
-/// rest. A plate above that part stops the part in hand.
+/// rest. A plate above the part at rest stops the part in hand.
 ProxyResult leadProxyThrough(const SceneSettings& settings);
 
 struct WallResult {

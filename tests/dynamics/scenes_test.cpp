@@ -57,8 +57,8 @@ TEST(Scenes, AFrictionlessNutFollowsItsThread) {
 // apply to the whole way.
 TEST(Scenes, AFastFrictionlessNutIsNotBraked) {
   const NutSpinResult r = spinNut(shortScene({0.25e-3, 1e-3}), kM10, 300, 40);
-  // The tolerance is a tenth of the speed that gravity adds. With the planes that it met, the nut lost 70
-  // rad/s.
+  // The tolerance is a tenth of the speed that gravity adds. With the planes that the points met, the nut
+  // lost 70 rad/s.
   EXPECT_NEAR(r.end_rad_s, r.theory_rad_s, 0.1 * (r.theory_rad_s - 300));
 }
 
@@ -128,8 +128,8 @@ struct State {
 // Two gears of the falling heap: the tip of a tooth slides out of the other gear's bore at 1.4 m/s, over the
 // rim of the bore. The plane of the bore's facet lets the tip pass, and the tip passes the edges of the rim
 // one after the other. The tip is then inside the end face, although it was in front of this face at the
-// start of the step. Where this face is left out, 13 of the first 40 cases are 2 to 32 um deep after their
-// first step.
+// start of the step. If contact leaves out the end face, 13 of the first 40 cases are 2 to 32 um deep after
+// their first step.
 TEST(SlidingGears, ATipThatLeavesABoreOverItsRimStaysOutside) {
   const PartMesh part = makeHeapGear();
   const Engine engine = heapEngine();

@@ -21,8 +21,9 @@ struct Family {
   std::function<double(int member)> measured;
   /// Parameters of one member in words, for the table's worst member.
   std::function<std::string(int member)> describe = nullptr;
-  /// A family that does not hold today: its greatest value today, over all members. The run then fails if a
-  /// value is above it, and also if all values are below the bar, until the expectation is removed here.
+  /// A family that does not hold today: its greatest value today, over all members. The run fails if a value
+  /// is above this expected value, and also if all values are below the bar, until the expectation is removed
+  /// here.
   std::optional<double> expected_failure = std::nullopt;
   /// The expected value of the short form, if it does not include the worst member; 0: the short form holds.
   std::optional<double> expected_failure_short = std::nullopt;
@@ -32,7 +33,7 @@ struct Family {
 std::vector<Family> materialFamilies();      // A: each fixed part has its own material
 std::vector<Family> restitutionFamilies();   // B: restitution never makes energy
 std::vector<Family> narrowGapFamilies();     // C: restitution in gaps below a step's travel
-std::vector<Family> nutGapFamilies();        // C: the same of nuts on their rods
+std::vector<Family> nutGapFamilies();        // C: restitution of nuts on their rods
 std::vector<Family> rotationFamilies();      // D: free rotation, fast rotation
 std::vector<Family> shellFamilies();         // E: several shells in one mesh; mass of a repaired mesh
 std::vector<Family> resolutionFamilies();    // F: resolution by the part's and its neighbours' size
@@ -45,7 +46,7 @@ std::vector<Family> penaltyFallFamilies();   // L: penalty contact of bodies tha
 std::vector<Family> loadedThreadFamilies();  // M: a loaded thread
 std::vector<Family> mechanismFamilies();     // N: mechanisms do not halt
 
-// Parts of the above, in sources of their own.
+// Families of the kinds above that have sources of their own.
 std::vector<Family> bounceFamilies();        // B: bounces under gravity
 std::vector<Family> massRatioFamilies();     // B: rows with a body of another mass
 std::vector<Family> fastRotationFamilies();  // D: fast rotation

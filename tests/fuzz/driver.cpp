@@ -21,7 +21,8 @@ extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*call
 
 namespace {
 
-constexpr std::size_t kMaxCuts = 3000;  // of one seed; a longer one is cut at every second byte, third, ...
+// Greatest number of cuts of one seed; a longer seed is cut at every second byte, third, ....
+constexpr std::size_t kMaxCuts = 3000;
 constexpr int kSlow_s = 30;             // an input that takes more processor time is a failure too
 std::string current;
 

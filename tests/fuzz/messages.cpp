@@ -26,7 +26,7 @@ void read(std::string_view bytes) {
     return;
   }
   MessageWriter writer(reader.envelope().sender);
-  constexpr char kCompactBit = static_cast<char>(0x80);  // dense states have it too
+  constexpr char kCompactBit = static_cast<char>(0x80);  // dense states have this bit too
   if ((bytes[0] & kCompactBit) == 0)
     vps::fuzz::require(writer.write(message).substr(kEnvelope) == bytes.substr(kEnvelope),
                        "a message is read back unchanged");

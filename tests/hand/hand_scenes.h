@@ -45,7 +45,7 @@ struct PegScene {
 /// rectangular: 4 mm square, 50 um of clearance on each side, sharp edges, 8 mm deep.
 const std::vector<PegScene>& pegScenes();
 
-/// A nut with a coarse right-hand thread (12 mm, pitch 3 mm) above an upright rod. The target is this far
+/// A nut with a coarse right-hand thread (12 mm, pitch 3 mm) above an upright rod. The target is depth_m
 /// below the height at which the nut meets the rod.
 scenes::Scene coarseThread(double depth_m, std::uint64_t seed);
 
@@ -56,7 +56,7 @@ scenes::Scene leaningNut(double depth_m, std::uint64_t seed);
 scenes::Scene smoothRod(double depth_m, std::uint64_t seed);
 
 /// The nut and bolt in the folder $VPS_CAD_DIR/thread-m16-loose, from above the first thread. Throws
-/// LoadError without it.
+/// LoadError without this folder.
 scenes::Scene looseM16(double depth_m, std::uint64_t seed);
 
 /// coarse_thread: two turns; leaning_nut: one; smooth_rod; m16: 10 mm down, five turns.

@@ -51,13 +51,13 @@ TEST(Hand, ASharpRectangularHoleIsSearchedAndFound) {
     EXPECT_TRUE(step.completed) << "seed " << seed << ": " << step.failure_reason;
     searched += uses(step, "tilt_in") || uses(step, "spiral_search");
   }
-  // The error of sight is greater than the 50 um on each side.
+  // The error of sight is greater than the clearance of 50 um on each side.
   EXPECT_GT(searched, 0);
 }
 
 TEST(TurnSearch, FindsAHoleThatIsTurnedFartherThanSightSays) {
   int searched = 0;
-  for (std::uint64_t seed = 5; seed <= 7; ++seed) {  // the seeds 1 to 4 find it by tilt or spiral
+  for (std::uint64_t seed = 5; seed <= 7; ++seed) {  // the seeds 1 to 4 find the hole by tilt or spiral
     const scenes::StepResult step = stepOf("turned", seed);
     EXPECT_TRUE(step.completed) << "seed " << seed << ": " << step.failure_reason;
     searched += uses(step, "turn_search");
@@ -67,7 +67,8 @@ TEST(TurnSearch, FindsAHoleThatIsTurnedFartherThanSightSays) {
 
 scenes::StepResult looseStep(const PegFit& fit, std::uint64_t seed) {
   scenes::Scene scene = pegScene("peg", holeMesh(fit), pegMesh(fit), fit.depth_m, seed);
-  scene.steps[0].tolerance_m = 1e-3;  // ten errors of sight: the hand alone is good enough for that
+  // Ten errors of sight, a tolerance for which the hand alone is good enough.
+  scene.steps[0].tolerance_m = 1e-3;
   scene.steps[0].tolerance_rad = 0.1;
   return stepOf(std::move(scene));
 }

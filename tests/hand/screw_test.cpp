@@ -20,7 +20,7 @@ scenes::StepResult assembled(const scenes::Scene& scene, int judge_stride = 500)
 
 TEST(Screw, ANutIsTurnedBackUntilItDropsAndThenScrewedOn) {
   // The run is judged often enough to see the end of the nut's thread pass the end of the bolt's, which takes
-  // ten ticks: the field reads up to 30 um too much there, and the nut once was 12 um deep.
+  // ten ticks: the field reads up to 30 um too much at these ends, and the nut once was 12 um deep.
   const scenes::StepResult step = assembled(coarseThread(4.5e-3, 1), 10);
   EXPECT_EQ(step.verdict, scenes::Verdict::Fits) << step.reason;
   std::vector<std::string> order;

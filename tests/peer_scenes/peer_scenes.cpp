@@ -144,7 +144,7 @@ const Peer& peerOf(const std::string& scene) {
 }
 
 // The tetrahedron of `vertex-face` is exactly balanced on its corner, so that its further motion would depend
-// on rounding. It is tilted by a millionth of a radian, which is 10 nm at its upper face.
+// on rounding. The tetrahedron is tilted by a millionth of a radian, which is 10 nm at its upper face.
 constexpr double kOffBalance_rad = 1e-6;
 
 Run prepare(const scenes::Scene& scene) {

@@ -70,7 +70,7 @@ TEST_F(Export, WhatCannotBeExportedIsRefusedAndLeavesNoFile) {
   expectRefused("export scene.toml -o a.vdb", "has several parts; choose one with --part: plate, pin");
   expectRefused("export scene.toml --part screw -o a.vdb",
                 "part 'screw': is not in the scene; its parts are: plate, pin");
-  // The first file can be written and the second cannot, so neither must appear.
+  // The first file can be written and the second cannot, so neither file must appear.
   expectRefused("export plate.stl --units mm -o good.stl -o /dev/null/a.vdb", "/dev/null/a.vdb");
   EXPECT_FALSE(fs::exists(folder_ / "good.stl"));
   ASSERT_EQ(run("export plate.stl --units mm --voxel 1mm -o plate.vdb").status, 0);

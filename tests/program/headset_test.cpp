@@ -101,7 +101,8 @@ TEST_F(Headset, ItsControllerTakesThePartInHandAndBringsItHome) {
       viewer::onTable(viewer::snapshotBounds(drawn, viewer::sceneTour(scene).at(0)));
   const scenes::SceneStep& step = scene.steps[0];
   const Vec3 middle_P = bounds(scene.parts[step.part].part.mesh).center();
-  const Vec3 from_R = room.toRoom(step.X_WP_start * middle_P) + Vec3(0, 0, 0.2);  // the hand points away
+  // The hand points away from the part.
+  const Vec3 from_R = room.toRoom(step.X_WP_start * middle_P) + Vec3(0, 0, 0.2);
   const Vec3 way_R = room.toRoom(step.X_WP_target * middle_P) - room.toRoom(step.X_WP_start * middle_P);
   std::this_thread::sleep_for(2s);  // the run shows the part in hand
   putHand(from_R, false);

@@ -22,7 +22,7 @@ TEST_F(Program, TheWayFromEncoderToPhotonAndSampleIsMeasuredInOneRun) {
   const nlohmann::json& stages = wall["since_read"];
   for (const char* key : {"found", "force"}) EXPECT_EQ(stages[key]["seen"], 5) << key << ": " << wall;
   for (const char* key : {"found", "force", "drawing", "picture"}) {
-    // On a busy machine it is possible that no picture shows a contact, or only one whose drawing began
+    // On a busy machine it is possible that no picture shows a contact, or only a picture whose drawing began
     // before the contact.
     if (stages[key]["seen"] == 0) continue;
     EXPECT_LE(stages[key]["p50_s"], stages[key]["max_s"]) << key;

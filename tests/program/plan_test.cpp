@@ -180,8 +180,8 @@ TEST_F(Plan, PartsFarFromTheirOriginKeepTheirGap) {
 }
 
 // Planning is stopped at times that are spread evenly over its duration (multiples of the golden ratio),
-// until one stop is after the first part was removed and before the end. On a loaded machine this takes more
-// tries.
+// until one stop is after the first part was removed and before the end. On a loaded machine the search for
+// such a stop takes more tries.
 TEST_F(Plan, WhatItFoundWhenItWasStoppedIsKeptAndResumed) {
   std::vector<NamedBox> boxes = {kPlate};
   for (int i = 0; i < 120; ++i) {
@@ -242,8 +242,8 @@ TEST_F(Plan, TheTableOfAFolderHasARowForEachAssembly) {
   EXPECT_NE(table.find("| c.step |"), std::string::npos) << table;
 }
 
-// A tongue in its groove. The walls of the pocket keep them together, so they are joined before they go into
-// the pocket.
+// A tongue in its groove. The walls of the pocket keep tongue and groove together, so both are joined before
+// they go into the pocket.
 TEST_F(Plan, SubassembliesOfACadFileAreAssembledBeforeTheProductThatMountsThem) {
   write("product.obj", objOf({{"pocket", {-25, -15, -5}, {25, 15, 0}},
                               {"pocket", {-25, -15, -5}, {-20.1, 15, 20}},

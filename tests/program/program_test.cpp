@@ -101,7 +101,8 @@ TEST_F(Program, LinksAndPipesAreNotReplacedByFiles) {
   for (const char* link : {"link.json", "dangling.json"}) EXPECT_TRUE(fs::is_symlink(folder_ / link)) << link;
   for (const char* file : {"old.json", "new.json"}) EXPECT_TRUE(json::accept(slurp(folder_ / file))) << file;
 
-  // The pipe is opened for reading first, so that the program finds a reader. Its buffer holds all output.
+  // The pipe is opened for reading first, so that the program finds a reader. The pipe's buffer holds all
+  // output.
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
@@ -141,7 +142,7 @@ TEST_F(Program, MeshesThatMakeTheAnswerUncertainGiveWarnings) {
 }
 
 TEST_F(Program, ADepthBeyondTheBandIsReportedAsABound) {
-  // The plate is 10 mm thick. In its middle the pin is 5 mm deep, and the band is 4 voxels wide.
+  // The plate is 10 mm thick. In the middle of the plate the pin is 5 mm deep, and the band is 4 voxels wide.
   const std::string call = "query plate.stl pin.stl --units mm --spacing 1mm --json a.json --voxel ";
   const Ran deep = run(call + "0.25mm");
   EXPECT_NE(deep.out.find("< -1000.00"), std::string::npos) << deep.out;

@@ -76,7 +76,8 @@ TEST_F(Scenario, ARealTimeRunReportsItsTimingAndExitsWithItsVerdict) {
                  data["physics"]["ticks"].get<long>() + data["wall"]["physics"]["missed_periods"].get<long>();
   EXPECT_GT(ticks, 1000);
   // The haptic loop continues while the step is judged and the next field is built, which takes more than a
-  // second. Its periods cover 99 % of this run; they would cover 76 % if it stopped meanwhile.
+  // second. The loop's periods cover 99 % of this run; they would cover 76 % if the loop stopped while the
+  // field is built.
   EXPECT_GT(static_cast<double>(periods) / data["haptic"]["rate_hz"].get<double>(),
             0.9 * data["wall"]["run_s"].get<double>());
   EXPECT_EQ(data["wall"]["missed_while_cooking"].size(), data["steps"].size());

@@ -84,8 +84,8 @@ class Window : public Program {
       return !window_.empty() || fs::exists(folder_ / "status.txt");
     }));
     ASSERT_FALSE(window_.empty()) << slurp(folder_ / "err.txt");
-    // A window has its name before it is on the screen. Until then it gets no keys; its first frame sets the
-    // camera.
+    // A window has its name before it is on the screen. Before the window is on the screen it gets no keys;
+    // the window's first frame sets the camera.
     ASSERT_TRUE(soon([&] {
       xdotool("windowfocus " + window_);
       return outputOf(display_ + "xdotool getwindowfocus 2>/dev/null") == window_;

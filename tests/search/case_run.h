@@ -33,11 +33,11 @@ struct CaseResult {
   bool has_tunnelled =
       false;  ///< an overlap is deeper than kLost_m, or a vertex went through another body within a step
   std::string refusal;     ///< the engine's reason for refusing the meshes, or what went wrong
-  std::uint64_t hash = 0;  ///< of all states
+  std::uint64_t hash = 0;  ///< hash of all states
   /// State before the first step after which the bound is exceeded, and up to kKept - 1 states before it, the
   /// latest last. Empty if no step exceeds the bound.
   std::vector<std::vector<BodyMotion>> before;
-  double before_s = 0;  ///< time of the latest of these states
+  double before_s = 0;  ///< time of the latest of the states in `before`
 };
 
 /// A body that is deeper than this in another one counts as on its wrong side: parts are at least 2 mm thick.

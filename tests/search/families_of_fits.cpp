@@ -25,8 +25,8 @@ CaseBody fixedBody(const char* name, Mesh mesh, double friction) {
   return body;
 }
 
-/// Goals of a hand that pushes a part in along `axis` and pulls it out again. Its aim is exact in some of the
-/// cases.
+/// Goals of a hand that pushes a part in along `axis` and pulls it out again. The hand's aim is exact in some
+/// of the cases.
 /// @param travel_m  positions along the axis between which the part is free to move in its fit
 Hand drawHand(Random& random, std::size_t body, const Pose& X_WP, const Vec3& axis, double low_m,
               double high_m) {

@@ -9,7 +9,7 @@ namespace vps::search {
 
 using test::Random;
 
-/// Vertices along a crack are moved by this at most, so that the surface stays where it was.
+/// Vertices along a crack are moved by kCrack_m at most, so that the surface stays nearly unchanged.
 inline constexpr double kCrack_m = 0.5e-6;
 
 /// The same solid with unshared vertices and one to three further faults: cracks, T-junctions, turned facets,

@@ -50,7 +50,7 @@ struct Dropped {
   double weight_N = 0;
   double mass_kg = 0;
   double start_m = 0;           ///< height of the block's centre above the plate
-  double end_m = 0;             ///< the same at the end
+  double end_m = 0;             ///< height of the block's centre above the plate at the end
   std::vector<Pose> X_SB_path;  ///< pose of the block after every tenth step; if is_mirrored, mirrored back
 };
 

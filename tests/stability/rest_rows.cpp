@@ -82,7 +82,8 @@ Judgement compareCopy(const Run& run) {
   // of a point's area: it yields by d = v sqrt(m / (k A)), 43 um at 0.14 m/s. The tolerance is half of this
   // depth.
   judgement.atMost("distance after 50 ms", early_m, run.mode == Mode::Penalty ? 20e-6 : 1e-6, "m");
-  // Then the block topples, and the difference grows by at most a hundred times until it lies on the plate.
+  // After the impact the block topples, and the difference grows by at most a hundred times until it lies on
+  // the plate.
   judgement.atMost("distance after 0.3 s", ever_m, run.mode == Mode::Penalty ? 2e-3 : 0.1e-3, "m");
   judgement.note(toText(ever_m) + " m in 0.3 s");
   return judgement;

@@ -39,7 +39,7 @@ using Truth = std::function<double(const Vec3&)>;
 inline Truth distanceTo(const Mesh& closed) {
   return [exact = std::make_shared<MeshDistance>(closed)](const Vec3& p) { return exact->signedDistance(p); };
 }
-/// The signed distance of the union. Inside, only its sign is right.
+/// The signed distance of the union. Inside the union, only the sign of the result is right.
 inline Truth either(Truth a, Truth b) {
   return [a = std::move(a), b = std::move(b)](const Vec3& p) { return std::min(a(p), b(p)); };
 }

@@ -38,8 +38,8 @@ struct OutlinePoint {
 /// point to point, so that rays from the axis cut the outline once.
 inline std::vector<OutlinePoint> gearOutline(const GearShape& gear, double root_m, double tip_m) {
   constexpr double kPressure_rad = 20 * std::numbers::pi / 180;
-  /// Below the base circle there is no involute. There the flank is nearly radial, with an angle that still
-  /// grows.
+  /// Below the base circle there is no involute. Below the base circle the flank is nearly radial, with an
+  /// angle that still grows.
   constexpr double kBelowBase_rad_per_m = 0.05;
   const double pitch_m = pitchRadius(gear), base_m = pitch_m * std::cos(kPressure_rad);
   const auto involute = [](double angle_rad) { return std::tan(angle_rad) - angle_rad; };

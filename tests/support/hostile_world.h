@@ -22,7 +22,8 @@
 
 namespace vps_test {
 
-/// Called with each claim. A test reports a claim that does not hold, a fuzz program aborts.
+/// A function that is called with each claim. A test reports a claim that does not hold, a fuzz program
+/// aborts.
 using Require = void (*)(bool claim, const char* promise);
 
 /// Each operation is a pair of bytes: the kind of operation, and the body or number to which it applies.

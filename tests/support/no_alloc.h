@@ -8,10 +8,10 @@
 namespace vps_test {
 
 /// Counts every allocation and release of this thread (new, malloc and related functions) while the scope
-/// exists; its destructor adds a test failure if there was one. With VPS_NO_ALLOC_ABORT=1 in the environment
-/// the program aborts at the first of them instead, so that a debugger shows the caller. Scopes may be
-/// nested. Under AddressSanitizer and ThreadSanitizer, which replace malloc, only operator new and delete are
-/// counted.
+/// exists; its destructor adds a test failure if there was an allocation or release. With
+/// VPS_NO_ALLOC_ABORT=1 in the environment the program aborts at the first allocation or release instead, so
+/// that a debugger shows the caller. Scopes may be nested. Under AddressSanitizer and ThreadSanitizer, which
+/// replace malloc, only operator new and delete are counted.
 class NoAllocScope {
  public:
   NoAllocScope() noexcept;

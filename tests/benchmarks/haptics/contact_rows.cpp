@@ -58,7 +58,7 @@ struct Press {
   double most_N = 0;
 };
 
-// The plate's top is z = 0. The block starts 1 mm above it and is pressed down at 2 mm/s.
+// The plate's top is z = 0. The block starts 1 mm above the plate and is pressed down at 2 mm/s.
 Press pressBlock(const RigSettings& settings, double stiffness_N_per_m3, double speed_m_s) {
   HapticRig rig(settings);
   rig.world().add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);

@@ -37,7 +37,7 @@ class HapticRig {
   [[nodiscard]] const device::SimulatedDualArm& arm() const { return arm_; }
   [[nodiscard]] const device::HapticLoop& loop() const { return loop_; }
   [[nodiscard]] const CouplingGains& gains() const { return loop_.settings().gains; }
-  /// The hand's true grasp frame, and the part's.
+  /// The true pose of the hand's grasp frame, and of the part's grasp frame.
   [[nodiscard]] Pose trueGrasp() const { return loop_.toGrasp(arm_.truePose()); }
   [[nodiscard]] const CouplingState& part() const { return part_; }
   /// The wrench of the motors on the hand, without the handle's weight, in W, which is D here.

@@ -108,7 +108,7 @@ Wrench LossyHand::actingWrench() const {
 
 void LossyHand::step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) {
   const device::WorkspaceMap& map = loop.settings().map;
-  if (is_holding_ && tick_++ % ticks_per_step_ == 0) {  // the part's state is that of this instant
+  if (is_holding_ && tick_++ % ticks_per_step_ == 0) {  // the state of the part is that of this tick
     const double now_J = work_J_ - dissipated_J_ * map.scale / map.force_scale + stored_J(part, loop);
     if (is_new_) start_J_ = now_J - energy_.balance_J;
     is_new_ = false;

@@ -79,7 +79,7 @@ class LossyHand final : public scenes::Hand {
   LossyDevice device_;
   device::DeviceLimits limits_;
   TrueEnergyBalance energy_;
-  /// The part that is held, or the next one.
+  /// The part that is held, or the next part.
   struct Held {
     Pose X_PG;
     bullet::BodyFrame body;

@@ -37,7 +37,7 @@ ProductSize writeProduct(const std::string& /*file*/, bool /*is_shared*/) {
 namespace {
 
 struct ProgramRun {
-  int status = -1;        ///< exit status; -1: a signal ended it
+  int status = -1;        ///< exit status; -1: a signal ended the program
   bool is_ended = false;  ///< false: the program was killed at the limit
   double wall_s = 0, cpu_s = 0;
   double peak_bytes = 0;  ///< resident memory
@@ -95,7 +95,7 @@ double loadAverage() {
   return getloadavg(&load, 1) == 1 ? load : 0;
 }
 
-/// A row of the table. `bar_s` compares with the wall time; 0: none.
+/// A row of the table. `bar_s` is the bar of the wall time; 0 means that the row has no bar.
 bool printRow(const std::string& what, const ProgramRun& run, double bar_s) {
   const bool is_good = run.is_ended && run.status >= 0 && run.status != 2 &&
                        (bar_s == 0 || run.wall_s <= bar_s) && run.peak_bytes <= kMost_bytes;

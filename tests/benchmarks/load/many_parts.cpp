@@ -70,7 +70,7 @@ Mesh pin(std::size_t triangles) {
                 triangles);
 }
 
-/// A stepped shaft; each number gives another height.
+/// A stepped shaft, whose height depends on its number.
 Mesh bystander(std::size_t number, std::size_t triangles) {
   const double height_m = 20e-3 + 1e-6 * static_cast<double>(number % 10000);
   return turned({{0, 0}, {8e-3, 0}, {8e-3, 6e-3}, {5e-3, 8e-3}, {5e-3, height_m}, {0, height_m}}, triangles);

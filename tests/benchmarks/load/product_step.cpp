@@ -51,7 +51,7 @@ gp_Trsf shifted(double x, double y, double z) {
   return t;
 }
 
-/// A transform that rotates z into the direction and moves to a place.
+/// A transform that rotates z into the direction `direction` and moves the origin to the point `at`.
 gp_Trsf along(const gp_Dir& direction, const gp_Pnt& at) {
   gp_Trsf t;
   t.SetTransformation(gp_Ax3(at, direction), gp_Ax3(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)));

@@ -47,7 +47,7 @@ std::int64_t systemNow_ns() {
 
 /// The state of the other node's clock, which that node writes.
 struct Other {
-  std::atomic<std::int64_t> drift_from_ns{0};  ///< by the other clock
+  std::atomic<std::int64_t> drift_from_ns{0};  ///< time of the other clock from which the other clock drifts
   std::atomic<bool> is_refused{false};
 };
 
@@ -59,7 +59,8 @@ struct Other {
   for (;;) pause();
 }
 
-/// Starts the other node by a process that creates a time namespace for its children. Returns that process.
+/// Starts the other node by a process that creates a time namespace for its children. Returns the process
+/// that creates the namespace.
 pid_t startOther(const std::string& session, Other& other) {
   const pid_t first = fork();
   if (first != 0) return first;

@@ -32,7 +32,8 @@ long segmentsOf(const std::string& session) {
   return count;
 }
 
-/// A peg above its hole, for a hand that a page moves, with a time limit so long that the run does not end.
+/// A peg above its hole, for a hand that a web page moves, with a time limit so long that the run does not
+/// end.
 void writeLongScene(const fs::path& file) {
   std::ofstream(file) << "unit = 'mm'\n[[part]]\nfile = '" VPS_SCENE_FOLDER
                          "/peg_in_hole/hole.stl'\nfixed = true\n[[part]]\nfile = '" VPS_SCENE_FOLDER
@@ -110,7 +111,8 @@ bool enduranceRow(double seconds) {
     std::fprintf(stderr, "\n");
   }
   for (test::ChildProcess* process : {&long_render, &page, &watch, &device, &other_page, &short_render})
-    while (process->isRunning()) {  // repeated, for a process that had just begun
+    while (process->isRunning()) {  // the signal is repeated, since a process that has just started may miss
+                                    // a signal
       process->interrupt();
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }

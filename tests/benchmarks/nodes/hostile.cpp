@@ -32,7 +32,7 @@ namespace {
 
 using scenes::Delivery;
 
-/// An intruder on one topic of a session, which can send a message that it heard again.
+/// An intruder on one topic of a session, which can resend a message that the intruder has received.
 class Intruder {
  public:
   Intruder(const scenes::DdsParticipant& participant, const std::string& name, Delivery delivery)
@@ -123,8 +123,8 @@ bool hostileRow(const std::string& scene) {
   const auto since_s = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   };
-  // The peer first sends as much as the nodes themselves, for a while as fast as it can, and then again with
-  // pauses.
+  // The hostile peer first sends as much as the nodes themselves, then for a while as fast as possible, and
+  // finally with pauses again.
   while (nodes.render.isRunning() && since_s() < 120) {
     for (const std::unique_ptr<Intruder>& topic : topics) {
       topic->sendGarbage(random);

@@ -97,7 +97,7 @@ std::string pathOf(const std::string& program) {
   const pid_t other = fork();
   if (other == 0) echo();
   End end("vps-bench-device", "haptic", "physics");
-  usleep(500'000);  // so that both ends find each other
+  usleep(500'000);  // time in which both ends find each other
   device::requestRealTime(80, false);
   MessageWriter writer(2);
   MessageReader reader;
@@ -137,7 +137,7 @@ bool iceoryxRow(double seconds) {
   }
   const test::TemporaryFolder folder;
   test::ChildProcess daemon({daemon_path}, folder.path() / "roudi.txt");
-  usleep(1'000'000);  // so that the daemon creates its memory
+  usleep(1'000'000);  // time in which the daemon creates its memory
   const pid_t measuring = fork();
   if (measuring == 0) measure(what, seconds);
   int status = 0;

@@ -32,7 +32,7 @@ class MemoryOfKills {
   void look(const test::ChildProcess& process) {
     if (process.isRunning()) all_MB_.push_back(test::usageOf(process.id()).memory_MB);
   }
-  /// Median of the first third; late_MB() is that of the last third.
+  /// Median of the memory in the first third of the kills; late_MB() is the median of the last third.
   [[nodiscard]] double early_MB() const { return median({all_MB_.begin(), all_MB_.begin() + third()}); }
   [[nodiscard]] double late_MB() const { return median({all_MB_.end() - third(), all_MB_.end()}); }
   [[nodiscard]] bool isSteady() const {

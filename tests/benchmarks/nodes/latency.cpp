@@ -194,13 +194,13 @@ bool latencyRow(const std::string& network, double seconds, double p50_bar_us, d
   const Times bare = network.empty() ? bareTimes(seconds, formOf(network)) : bareUdpTimes(seconds);
   MessageWriter sizes(1, formOf(network));
   HapticMessage usual;
-  std::size_t bytes = 0;  // the first states are whole
+  std::size_t bytes = 0;  // the first states are whole, so the size is that of the last message
   for (usual.state.tick = 1; usual.state.tick < 20; ++usual.state.tick) bytes = sizes.write(usual).size();
   Ends ends(network);
   End& device = *ends.device;
   int unanswered = 0;
   device.sendHaptic(0);
-  usleep(300'000);  // so that both have found each other
+  usleep(300'000);  // time in which both processes find each other
   device::requestRealTime(80, false);
   const Times both = timed(seconds, [&](std::int32_t i) {
     device.sendHaptic(i);

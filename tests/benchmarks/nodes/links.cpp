@@ -126,9 +126,9 @@ class StateLink final : public LinkModel {
   CouplingGains gains_;
 };
 
-/// Sends the sum and the energy of all waves so far, so that later packets make up for lost ones, as far as
-/// the energy that was sent allows [Niemeyer and Slotine 1998]. Each packet is used as late as the latest one
-/// may arrive, so that jitter does not distort the waves.
+/// Sends the sum and the energy of all waves so far, so that later packets make up for lost packets, as far
+/// as the energy that was sent allows [Niemeyer and Slotine 1998]. Each packet is used only after the longest
+/// possible delay, so that jitter does not distort the waves.
 class WaveWay {
  public:
   WaveWay(const Net& net, unsigned seed) : wire_(net, seed), late_s_(net.delay_s + net.jitter_s) {}
@@ -192,7 +192,7 @@ class WaveLink final : public LinkModel {
 };
 
 /// Sends velocity to the part and force back, each with the energy that went in at its end. Each end
-/// dissipates energy that would come out in excess of the energy that went in at the other end.
+/// dissipates the energy that exceeds the energy which went in at the other end.
 class PassivityLink final : public LinkModel {
  public:
   explicit PassivityLink(const Net& net) : there_(net, 1), back_(net, 2), gains_(gainsAt(0)) {}

@@ -13,14 +13,14 @@
 namespace vps::bench {
 
 struct WireFaults {
-  double loss = 0;      ///< share of packets, each way
+  double loss = 0;      ///< share of the packets that are lost, in each direction
   double delay_s = 0;   ///< one way
   double jitter_s = 0;  ///< added to the delay, uniformly distributed, so that packets overtake each other
   double doubled = 0;   ///< share of packets that arrive twice
 };
 
 /// Namespaces "vpsbench-a" and "vpsbench-b" with an interface "wire" each. Throws std::runtime_error if the
-/// system does not allow it.
+/// system does not allow network namespaces.
 class LossyWire {
  public:
   explicit LossyWire(const WireFaults& faults);
@@ -28,7 +28,7 @@ class LossyWire {
   LossyWire(const LossyWire&) = delete;
   LossyWire& operator=(const LossyWire&) = delete;
 
-  /// Bytes and packets that were put on the wire, with all headers, both ways.
+  /// Bytes and packets that were put on the wire, with all headers, in both directions.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] std::uint64_t packets() const { return packets_; }
   /// Bytes of each whole second so far.

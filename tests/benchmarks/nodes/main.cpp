@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
              "endurance",
              "3600"};
   std::printf("| case | bar | measured | |\n|---|---|---|---|\n");
-  std::fflush(stdout);  // so that the head comes before rows of other processes
+  std::fflush(stdout);  // so that the table's head is printed before the rows of other processes
   bool is_good = true;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool has_more = i + 1 < words.size();

@@ -45,7 +45,7 @@ void writeFastScene(const std::filesystem::path& file) {
 }
 
 struct Bandwidth {
-  double median_Mbit = 0;  ///< median of the seconds in which states go both ways
+  double median_Mbit = 0;  ///< median of the seconds in which states are sent in both directions
   double most_Mbit = 0;    ///< the busiest second after the nodes have found each other
   double start_Mbit = 0;   ///< the busiest second of all, with discovery and the transfer of the scene
 };
@@ -102,8 +102,8 @@ bool wireRow(const std::string& scene, const WireFaults& faults) {
                 run["verdict"].get<std::string>().c_str(), static_cast<long>(done), run["steps"].size(),
                 1e3 * injected_J, run["steps"].empty() ? 0.0 : run["steps"][0]["peak_force_N"].get<double>(),
                 run["wall"]["haptic"].contains("faults") ? run["wall"]["haptic"]["faults"].get<long>() : -1L,
-                lineWith(render_text, "the coupling has").c_str(), bandwidth.median_Mbit,
-                bandwidth.most_Mbit, bandwidth.start_Mbit);
+                lineWith(render_text, "the coupling has").c_str(), bandwidth.median_Mbit, bandwidth.most_Mbit,
+                bandwidth.start_Mbit);
   const bool has_faults = faults.delay_s > 0;
   const bool is_reached = injected_J <= kInjectedBar_J && done == static_cast<long>(run["steps"].size()) &&
                           (has_faults || bandwidth.most_Mbit <= kBandwidthBar_Mbit);

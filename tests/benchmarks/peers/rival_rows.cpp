@@ -113,7 +113,7 @@ void queryRow(const Options& options, Table& table) {
   std::vector<std::vector<double>> times_s(all.size());
   std::vector<PairQuery::Answer> last(all.size());
   std::vector<double> worst_error_m(all.size(), 0);
-  for (std::size_t p = 0; p < poses.size(); ++p)  // alternating, pose by pose
+  for (std::size_t p = 0; p < poses.size(); ++p)  // the engines alternate at each pose
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (!all[k].query) continue;
       const double start_s = dynamics::threadTime_s();

@@ -12,7 +12,7 @@
 
 namespace vps::bench {
 
-/// Bullet's own mesh against mesh. @param margin_m  of every shape
+/// Bullet's own mesh against mesh. @param margin_m  margin of every shape
 dynamics::Engine gimpactEngine(double margin_m);
 
 /// The convex hull of each part, without margin.

@@ -11,9 +11,9 @@ namespace vps::bench {
 
 struct Figure {
   std::string text;   ///< measured value with its unit
-  std::string bound;  ///< its bound; empty: reported, not judged
+  std::string bound;  ///< bound of the value; empty: the value is reported, not judged
   bool is_met = true;
-  std::string name = {};  ///< the measured quantity; empty: the bound says it
+  std::string name = {};  ///< name of the measured quantity; empty: the bound names the quantity
 };
 
 struct Row {

@@ -126,7 +126,7 @@ Solids coverWithScrews(double hole_d) {
   return all;
 }
 
-/// An open box with something in it, and a lid that stands in its mouth.
+/// An open box with a block inside, and a lid that stands in the box's mouth.
 Solids boxWithLid(double height_inside) {
   const TopoDS_Shape open = cut(box(60, 60, 40), at(box(50, 50, 40), 0, 0, 5));
   const TopoDS_Shape lid = joined(at(box(60, 60, 5), 0, 0, 40), at(box(49.8, 49.8, 5), 0, 0, 35));
@@ -196,12 +196,13 @@ Solids keyedHub() {
 }
 
 /// A slot that goes in from above and then sideways; the block's head is wider than the slot's mouth.
-/// @param gap  clearance of the mouth; farther in it is 0.2 mm
+/// @param gap  clearance of the mouth; farther in, the clearance is 0.2 mm
 Solids elbowSlot(double gap) {
   TopoDS_Shape base = box(100, 60, 40);
-  base = cut(base, at(box(24 + gap, 24 + gap, 40), -25, 0, 12));  // the block comes in here from above
-  base = cut(base, at(box(70, 24.2, 16.2), 0, 0, 12));            // the block moves along here
-  base = cut(base, at(box(70, 12.2, 40), 0, 0, 12));              // the path of the neck
+  base = cut(base,
+             at(box(24 + gap, 24 + gap, 40), -25, 0, 12));  // the path by which the block enters from above
+  base = cut(base, at(box(70, 24.2, 16.2), 0, 0, 12));      // the path along which the block then moves
+  base = cut(base, at(box(70, 12.2, 40), 0, 0, 12));        // the path of the neck
   const TopoDS_Shape tee = joined(at(box(24, 24, 16), 20, 0, 12), at(box(12, 12, 40), 20, 0, 20));
   return {base, tee};
 }

@@ -58,7 +58,7 @@ class Measurement {
     }
   }
 
-  /// The count per pose, for both surfaces.
+  /// Mean count of distances per pose, for both surfaces.
   [[nodiscard]] Count count(double tile_m, Bound bound, double reach_m) const {
     Count sum;
     for (const std::vector<Reading>& surface : readings_)

@@ -18,7 +18,7 @@ namespace vps::bench {
 struct Fit {
   std::string name;
   Mesh mesh[2];
-  std::vector<Pose> X_01;           ///< of part 1 in part 0, before it is moved along `way`
+  std::vector<Pose> X_01;           ///< poses of part 1 in part 0, before part 1 is moved along `way`
   Vec3 way = Vec3::Zero();          ///< unit vector in part 0
   double play_m = 0;                ///< the parts touch within this distance
   double fine_m = 0, coarse_m = 0;  ///< voxel sizes
@@ -37,7 +37,7 @@ Pose touching(const Fit& fit, const Pose& X_01, const Model (&model)[2]);
 
 enum class Bound {
   Everywhere,   ///< half a voxel
-  BesideEdges,  ///< half a voxel within a voxel of a sharp edge, a twentieth elsewhere
+  BesideEdges,  ///< half a voxel within a voxel of a sharp edge, a twentieth of a voxel elsewhere
   Block,        ///< stored for each block of 8 x 8 x 8 voxels
   Cell,         ///< stored for each voxel
   ShellLeaf,    ///< the greatest true error of sixteen neighbouring points, which depends on the pose
@@ -52,7 +52,7 @@ class FieldError {
   explicit FieldError(const Model& part);
 
   [[nodiscard]] bool isBesideEdge(const Vec3& p_M) const;
-  /// Not for Bound::ShellLeaf, which depends on the pose.
+  /// Must not be called for Bound::ShellLeaf, which depends on the pose.
   [[nodiscard]] double bound_m(Bound bound, const Vec3& p_M);
 
  private:
@@ -67,9 +67,10 @@ class FieldError {
 
 /// A point of one part in the field of the other.
 struct Reading {
-  Vec3 p, inward;                                   ///< in its own part
-  double reading_m = 0, distance_m = 0;             ///< distance by the field, and exact distance
-  std::array<double, kBounds.size()> bound_m = {};  ///< bounds of their difference, indexed by Bound
+  Vec3 p, inward;  ///< point and inward normal, in the frame of the part that has the point
+  double reading_m = 0, distance_m = 0;  ///< distance by the field, and exact distance
+  std::array<double, kBounds.size()> bound_m =
+      {};  ///< bounds of the difference between both distances, indexed by Bound
   bool is_beside_edge = false;
   [[nodiscard]] double least_m(Bound bound) const {
     return reading_m - bound_m[static_cast<std::size_t>(bound)];

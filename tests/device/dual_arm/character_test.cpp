@@ -15,7 +15,7 @@
 namespace vps::device {
 namespace {
 
-// Computed once, since it takes a second.
+// The character is computed once, since the computation takes a second.
 const DualArmCharacter& character() {
   static const DualArmCharacter c = characterise(DualArmParameters{});
   return c;
@@ -38,7 +38,8 @@ TEST(DualArmForces, WorstDirectionIsTheMinimumOverAllDirections) {
         ASSERT_GE(along, least * (1 - 1e-12));
         found = std::min(found, along);
       }
-      // Of 20000 directions one is within 0.05 rad of the worst direction; the cosine of that is 0.1% off.
+      // Of 20000 directions one is within 0.05 rad of the worst direction; the cosine of this angle is 0.1%
+      // off.
       EXPECT_LT(found, least * 1.002);
     }
   }
@@ -100,7 +101,7 @@ TEST(Characterise, TableOneIsMetWhereTheDeviceStatesIt) {
   EXPECT_EQ(c.gains_1kHz.k_N_per_m, characterise(p).gains_1kHz.k_N_per_m);
 }
 
-// coupling_stability_test.cpp verifies that these are passive and have no limit cycle.
+// coupling_stability_test.cpp verifies that these gains are passive and have no limit cycle.
 TEST(Characterise, GainsAreDerivedFromTheArmsLimits) {
   const DualArmParameters p;
   const DualArmCharacter c = characterise(p);
@@ -151,7 +152,8 @@ TEST(Characterise, NoReadingsErrorExceedsTheStatedResolution) {
     worst_m = std::max(worst_m, (X_read.p - X_DH.p).norm());
     worst_rad = std::max(worst_rad, rotationVector(X_read.R * X_DH.R.transpose()).norm());
   }
-  EXPECT_LE(worst_m, c.resolution_m.greatest * 1.01);  // between the grid's places it may be a little more
+  EXPECT_LE(worst_m, c.resolution_m.greatest *
+                         1.01);  // between the grid's places the resolution may be a little coarser
   EXPECT_LE(worst_rad, c.resolution_rad.greatest * 1.01);
   EXPECT_GT(worst_m, 0.6 * c.resolution_m.greatest) << "the bound is much too wide";
 }

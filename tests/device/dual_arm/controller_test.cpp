@@ -59,13 +59,15 @@ TEST(DualArmController, EachFaultIsNamedSwitchesTheMotorsOffAndIsClearedByRearm)
       {Hostile::kNan, 2, DeviceEventKind::BadEncoder, 1},
       {Hostile::kNan, 3, DeviceEventKind::BadEncoder, 1},
       {Hostile::kHuge, 2, DeviceEventKind::EncoderJump, 1},
-      {Hostile::kJump, 21, DeviceEventKind::EncoderJump, 1},  // 40 mrad of a plate 0.75 m off: 30 mm
-      {Hostile::kApart, 7, DeviceEventKind::PulledApart, 1},  // 20 mm: no jump yet, but not L
+      {Hostile::kJump, 21, DeviceEventKind::EncoderJump,
+       1},  // the plate jumps by 40 mrad, which is 30 mm at 0.75 m
+      {Hostile::kApart, 7, DeviceEventKind::PulledApart,
+       1},  // 20 mm are not yet a jump, but the distance of the arms' ends is no longer L
       {Hostile::kLeftLost, 0, DeviceEventKind::LeftArmLost, 1},
       {Hostile::kRightLost, 0, DeviceEventKind::RightArmLost, 1},
       {Hostile::kClockBack, 5, DeviceEventKind::ClockBackwards, 1},
       {Hostile::kClockNan, 0, DeviceEventKind::BadEncoder, 1},
-      {Hostile::kSilent, 0, DeviceEventKind::Silent, 22},  // the watchdog's 20 ms, and one tick
+      {Hostile::kSilent, 0, DeviceEventKind::Silent, 22},  // after the watchdog's 20 ms and one tick
   };
   const Wrench wanted{Vec3(0.1, 0, 0), Vec3(1, 2, 3)};
   for (const Case& c : cases) {
@@ -108,7 +110,8 @@ TEST(DualArmController, ALostPeerLeavesOnlyTheHandlesWeightCarried) {
   Wrench F;
   ASSERT_EQ(handleWrench(rig.plant.settings().arms, rig.plant.pose(), rig.controller.efforts(), F),
             Status::Ok);
-  EXPECT_NEAR(F.f.z(), 9.81 * 0.2, 2e-3);  // the weight, at a pose that is off by 1 mm in arms of 0.75 m
+  EXPECT_NEAR(F.f.z(), 9.81 * 0.2,
+              2e-3);  // the handle's weight, at a pose that is off by 1 mm in arms of 0.75 m
   EXPECT_LT(F.f.head<2>().norm(), 5e-3);
   rig.controller.rearm();
   rig.tick(wanted);
@@ -121,7 +124,7 @@ TEST(DualArmController, SharpMotionSwitchesTheMotorsOff) {
   Rig rig;
   for (int i = 0; i < 10; ++i) rig.tick();
   rig.hand = {};
-  rig.hand.F.f = Vec3(0, 0, 40);  // 0.8 kg: 3 m/s after 60 ms
+  rig.hand.F.f = Vec3(0, 0, 40);  // 40 N accelerate 0.8 kg to 3 m/s in 60 ms
   int ticks = 0;
   while (!rig.controller.hasFault() && ticks < 200) {
     rig.tick({Vec3::Zero(), Vec3(0, 0, 5)});
@@ -129,13 +132,13 @@ TEST(DualArmController, SharpMotionSwitchesTheMotorsOff) {
   }
   EXPECT_EQ(rig.controller.fault(), DeviceEventKind::SharpMotion);
   EXPECT_GT(rig.plant.twist().v.norm(), 2.5);
-  EXPECT_LT(rig.plant.twist().v.norm(), 3.5);  // the filter lags by 2 ms of 50 m/s^2
+  EXPECT_LT(rig.plant.twist().v.norm(), 3.5);  // the filter lags by 2 ms at an acceleration of 50 m/s^2
   EXPECT_TRUE(rig.controller.efforts().isZero());
 }
 
 TEST(DualArmController, SaturationKeepsTheWrenchsDirectionAndCarriesTheHandle) {
   Rig rig;
-  rig.hand.k_N_per_m *= 10;  // 100 N do not move the handle far
+  rig.hand.k_N_per_m *= 10;  // a hand so stiff that 100 N do not move the handle far
   rig.hand.k_Nm_per_rad *= 10;
   rig.tick();
   const DualArmParameters& p = rig.plant.settings().arms;
@@ -169,7 +172,7 @@ TEST(DualArmController, IncrementalEncodersGiveNoForceUntilCalibratedInTheCradle
 
   // The encoders count from the position at which they were switched on.
   rig.hardware.set(vps_test::HostileArm::kDrift, 4);
-  for (int i = 0; i < 100; ++i) rig.controller.read();  // 40 mrad and 40 mm off in each joint
+  for (int i = 0; i < 100; ++i) rig.controller.read();  // each joint is then read 40 mrad or 40 mm off
   rig.hardware.set(vps_test::HostileArm::kNone, 0);
   EXPECT_EQ(rig.controller.calibrate(Pose::translation(Vec3(0, 5, 0))), Status::Ok) << "any pose has joints";
   const Pose cradle(rotationFromVector(Vec3(0.1, 0, -0.2)), Vec3(0.02, -0.03, 0.01));

@@ -168,8 +168,8 @@ TEST(Handle, ForwardUndoesInverseOverTheWholeWorkspaceAndAllDirections) {
     });
     EXPECT_GT(visited, 15000);
     RecordProperty("worst_m", std::to_string(1e15 * worst_m) + "e-15");
-    // Required are 1e-9 m and 1e-9 rad. Roundings of 1e-16 times 1 / L and 1 / cos q2 (3.4 at its limit) give
-    // 1e-13.
+    // The required accuracy is 1e-9 m and 1e-9 rad. Roundings of 1e-16 times 1 / L and 1 / cos q2 (3.4 at its
+    // limit) give 1e-13.
     EXPECT_LE(worst_m, 1e-13);
     EXPECT_LE(worst_rad, 1e-13);
     EXPECT_LE(worst_joint, 1e-13);
@@ -205,7 +205,7 @@ TEST(Handle, SingularAnglesAndJointLimitsAreDetected) {
   const Pose locked(rotationFromVector(Vec3(0, 0, -kPi / 2)), Vec3(0.5 * p.handle_m, 0, 0));
   const Pose X_locked = locked * Pose::translation(p.p_EH);
   EXPECT_EQ(handleMotion(p, X_locked, motion), Status::Singular);
-  // Each limit in turn: just within is reachable, just beyond is not.
+  // A pose just within each joint's limit is reachable, and a pose just beyond the limit is not.
   const auto isReached = [&](int joint, double value) {
     DualArmJoints joints;
     EXPECT_EQ(handleJoints(p, Pose::translation(p.p_EH), joints), Status::Ok);
@@ -396,9 +396,10 @@ TEST(Statics, TableOneForceIsReachedThroughoutTheWorkspace) {
     ASSERT_EQ(motorEfforts(p, X_DH, {p_HE.cross(Vec3(0, 0, 1)), Vec3(0, 0, 1)}, efforts), Status::Ok);
     least_up_N = std::min(least_up_N, (limit.array() / efforts.array().abs().max(1e-12)).minCoeff());
   }
-  // Section 3: at worst 12 N upward of the pair, with the handle's weight carried.
+  // Section 3 of the paper: the pair of arms pushes upward with at least 12 N while it carries the handle's
+  // weight.
   EXPECT_GT(least_up_N - 9.81 * p.handle_kg, 12);
-  EXPECT_GT(p.plate_torque_Nm / p.reach_max_m, 5);  // one arm alone, at worst
+  EXPECT_GT(p.plate_torque_Nm / p.reach_max_m, 5);  // the force of one arm alone, at worst
   EXPECT_LT(p.plate_torque_Nm / p.reach_max_m, 6);
 }
 

@@ -53,7 +53,7 @@ TEST(DualArmPlant, WithFixedMotorsTheHandleYieldsByTheStructureAlone) {
     ASSERT_EQ(handleMotion(p, settings.X_DH_start, motion), Status::Ok);
     const Mat6 K = motion.J.transpose() * structureStiffness(p, motion.joints).asDiagonal() * motion.J;
     for (const bool is_held :
-         {false, true}) {  // by a hand that lets the handle rotate, and one that does not
+         {false, true}) {  // by a hand that lets the handle rotate, and by a hand that does not
       HandForce hand;
       hand.X_eq = settings.X_DH_start;
       if (is_held) hand.k_Nm_per_rad = 1e6 * Mat3::Identity();
@@ -196,15 +196,17 @@ TEST(DualArmPlant, StopsHoldEachJointAndReturnNoEnergy) {
         const double least = is_slide ? p.reach_min_m : -most;
         const double beyond = std::max(value - most, least - value);
         has_hit = has_hit || beyond > 0;
-        // Slides: 15 N and the way's kinetic energy into 20 kN/m. Plates and gimbal: 15 N on up to 1.35 m
-        // into 2 kN m/rad, and 0.5 N m into 20 N m/rad, with the same again for the run-up.
+        // Slides: 15 N and the kinetic energy of the run-up act on a stop of 20 kN/m. Plates and gimbal: 15 N
+        // at a lever arm of up to 1.35 m act on a stop of 2 kN m/rad, and 0.5 N m on a stop of 20 N m/rad;
+        // the run-up adds the same amount.
         const double allowed = is_slide ? 5e-3 : i < 6 ? 0.05 : 0.15;
         EXPECT_LT(beyond, allowed) << "axis " << axis << " joint " << i;
       }
       travelled_J += kDt_s * power(plant.lastHandWrench(), plant.twist());
       gained_J = std::max(gained_J, plant.kinetic_J() + plant.structure_J() - travelled_J);
     }
-    // About x the handle turns end for end: no joint stop limits that, the arms would collide first.
+    // About x the handle turns end for end: no joint stop limits this rotation, since the arms would collide
+    // first.
     EXPECT_EQ(has_hit, axis / 2 != 3) << axis;
     EXPECT_LT(gained_J, 2e-3)
         << "axis " << axis;  // weight and its compensation differ by the structure's deflection of 0.2 mm
@@ -237,7 +239,8 @@ TEST(DualArmPlant, NoiseHasTheStatedDeviationAndDependsOnlyOnTheSeed) {
   EXPECT_TRUE(is_other);
   for (int i = 0; i < 7; ++i) {
     const double mean = sum[i] / kReads, deviation = std::sqrt(squares[i] / kReads - mean * mean);
-    // 5 and the rounding's 1/sqrt(12); four deviations of an estimate from 4000: 4 / sqrt(8000).
+    // The variance is 5^2 plus the rounding's 1/12; the tolerance is four standard deviations of an estimate
+    // from 4000 reads, 4 / sqrt(8000).
     EXPECT_NEAR(deviation, std::sqrt(25 + 1 / 12.0), 0.045 * 5) << i;
   }
 }
@@ -248,7 +251,7 @@ TEST(DualArmPlant, OscillatesOnItsStructureAtTheFrequencyOfItsInertia) {
   settings.arms.handle_kg = 1e-6;  // no weight: only structure and inertia
   settings.arms.gimbal_N_per_m = 1e9;
   settings.arms.p_EH.setZero();
-  // Motors held by their inertia: a thousand times the links'.
+  // The motors are held by their inertia, a thousand times that of the links.
   settings.arms.plate_kgm2 = 50;
   settings.arms.motor_share = 0.99;
   const DualArmParameters& p = settings.arms;
@@ -273,8 +276,8 @@ TEST(DualArmPlant, OscillatesOnItsStructureAtTheFrequencyOfItsInertia) {
   }
   ASSERT_GT(crossings, 5);
   const double found_hz = (crossings - 1) / (last_s - first_s);
-  // Reduced inertia: 1% on the link's side against 99% on the motor's. Euler's step shifts it by (w dt)^2 /
-  // 3, 1e-5.
+  // Reduced inertia: 1% on the link's side against 99% on the motor's. Euler's step shifts the frequency by
+  // (w dt)^2 / 3, which is 1e-5.
   const double link = 0.01 * p.plate_kgm2, motor = 0.99 * p.plate_kgm2,
                reduced = link * motor / (link + motor);
   const double expected_hz = std::sqrt(p.plate_Nm_per_rad / reduced) / (2 * M_PI);
@@ -287,7 +290,7 @@ TEST(DualArmPlant, MotorsNeverHeatBeyondTheirContinuousRating) {
   MotorHeat heat(p);
   double hottest = 0, peak_s = 0;
   for (int i = 0; i < 20000; ++i) {
-    const JointVector efforts = heat.limits();  // always the present limit
+    const JointVector efforts = heat.limits();  // the efforts are always at the present limit
     if (efforts[0] > 0.99 * p.plate_peak_Nm) peak_s = i * kDt_s;
     heat.add(efforts, kDt_s);
     hottest = std::max(hottest, heat.heat().maxCoeff());

@@ -90,7 +90,8 @@ TEST(SimulatedDualArm, MotorsCarryTheHandleWithoutAHand) {
       arm.write({});
       arm.step(1e-3, {});
     }
-    // Only rounding moves it; with deflection the weight's compensation has an error of 1e-5, for a second.
+    // Only rounding moves the handle; with deflection the weight's compensation has an error of 1e-5, for a
+    // second.
     EXPECT_LT(arm.truePose().p.norm(), is_ideal ? 1e-9 : 3e-5);
   }
 }
@@ -137,7 +138,8 @@ TEST(SimulatedDualArm, EnergyNeverGrowsInFreeSwing) {
       worst_J = std::max(worst_J, energy_J);
     }
     EXPECT_LT(worst_J, 1.01 * first_J)
-        << "step " << dt_s;  // the arms' changing inertia, first order in the step
+        << "step "
+        << dt_s;  // the error comes from the arms' changing inertia and is of first order in the step
   }
 }
 
@@ -165,7 +167,8 @@ TEST(SimulatedDualArm, AHandAtRestFeelsTheMotorsWrench) {
     arm.write(wanted);
     arm.step(1e-3, hand);
   }
-  // Dry friction of the joints may carry a part: 0.3 N and 0.03 N m. Displacement: force over stiffness.
+  // Dry friction of the joints may carry a part of the wrench: 0.3 N and 0.03 N m. Displacement: force over
+  // stiffness.
   EXPECT_LT((arm.lastHandWrench().f + wanted.f).norm(), 0.3);
   EXPECT_LT((arm.lastHandWrench().tau + wanted.tau).norm(), 0.03);
   EXPECT_LT((arm.truePose().p - wanted.f / 500).norm(), 0.3 / 500);
@@ -231,7 +234,8 @@ TEST(SimulatedDualArm, ANonFiniteWrenchOrHandHasNoEffect) {
   SimulatedDualArm arm;
   arm.read();
   arm.write({Vec3(NAN, 0, 0), Vec3(INFINITY, 0, 0)});
-  EXPECT_LT(arm.appliedWrench().f.norm(), 2 * 1e-4);  // the weight's, by an error of 1e-4 in the pose
+  EXPECT_LT(arm.appliedWrench().f.norm(),
+            2 * 1e-4);  // the error of the weight's force for an error of 1e-4 in the pose
   HandForce hand;
   hand.F.f = Vec3(NAN, 0, 0);
   arm.step(1e-3, hand);

@@ -65,8 +65,8 @@ struct Drop {
   [[nodiscard]] double gained(Mode mode) const {
     ImpactWorld scene(mode);
     scene.addFixed(boxPart(Vec3(0.2, 0.2, 0.02)), Pose::translation(Vec3(0, 0, -0.01)), 1, friction);
-    // The stack is tilted about the middle of its lowest face, and raised by as much as the edges of this
-    // face are then lower.
+    // The stack is tilted about the middle of its lowest face, and raised by the distance by which the tilt
+    // lowers the edges of this face.
     const Mat3 R = rotationFromVector(Vec3(0.6, 0.8, 0) * tilt_rad);
     const Vec3 base(0, 0, height_m + tilt_rad * (is_heap ? 0.05 : 0.015));
     for (int i = 0; i < count; ++i)
@@ -89,8 +89,8 @@ struct Drop {
   }
 };
 
-/// Equal cubes in a row without friction or gravity. The first ones fly at the others, which are at rest.
-/// With e = 1 the same number of cubes leaves at the other end, at the same speed.
+/// Equal cubes in a row without friction or gravity. The first cubes fly at the other cubes, which are at
+/// rest. With e = 1 the same number of cubes leaves at the other end, at the same speed.
 struct Row {
   int count = 3, moving = 1;
   double gap_m = 0.1e-3, speed_m_s = 1, dt_s = 1e-3;
@@ -136,8 +136,9 @@ struct Row {
   }
 };
 
-/// A cube that flies without rotation into a corner of one to three walls, which it reaches in one step or in
-/// different ones. Each wall has its own restitution and reverses the velocity component along its normal.
+/// A cube that flies without rotation into a corner of one to three walls, which the cube reaches in the same
+/// step or in different steps. Each wall has its own restitution and reverses the velocity component along
+/// its normal.
 struct Corner {
   int walls = 3;
   double e[3] = {1, 1, 1};
@@ -232,7 +233,7 @@ struct Swarm {
   struct Changes {
     double linear = 0;
     double angular = 0;            ///< in steps in which the solver separated no bodies by a push
-    double angular_of_pushes = 0;  ///< in the other steps: a push changes positions but not velocities
+    double angular_of_pushes = 0;  ///< in steps with a push, which changes positions but not velocities
   };
   [[nodiscard]] Changes changes() const {
     ImpactWorld scene;

@@ -93,7 +93,7 @@ std::string describe(int member) {
 }
 
 // The torque rises evenly, from a share of the theoretical torque, until the nut has turned by kTurned_rad.
-// At the right torque this takes two or three steps, so the torque is measured to a hundredth.
+// At the right torque this turn takes two or three steps, so the torque is measured to a hundredth.
 double error(dynamics::Mode mode, double from, int member) {
   // Points are a millimetre apart, as in scenes that state no spacing.
   static const dynamics::Engine engine = dynamics::vpsEngine({0.25e-3, 1e-3});
@@ -129,7 +129,7 @@ std::vector<Family> loadedThreadFamilies() {
   ours.key = "M_torque";
   ours.measure = "error of the torque by thread theory, our solver";
   ours.bar = 0.02;
-  ours.members = 16;  // each takes seconds
+  ours.members = 16;  // each member takes seconds
   ours.every = 13;
   ours.expected_failure = 0.06;
   ours.expected_failure_short = 0;

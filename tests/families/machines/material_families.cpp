@@ -20,7 +20,7 @@ constexpr double kGravity_m_s2 = 9.81;
 constexpr double kPitch_m = 16e-3;  // from plate to plate
 const Vec3 kBlock_m(10e-3, 8e-3, 6e-3);
 
-/// Plates with their tops at z = 0, and the block of each.
+/// Plates with their tops at z = 0, and a block on each plate.
 struct Pairs {
   std::vector<Material> plates, blocks;
   std::vector<int> place;  // place of each plate along y; the parts are in random order

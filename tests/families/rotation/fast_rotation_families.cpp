@@ -31,8 +31,8 @@ dynamics::SceneSettings settings(const dynamics::Resolution& resolution) {
   return settings;
 }
 
-/// Makes steps of a millisecond, whole or divided, and keeps whether the library reported one of them as too
-/// long.
+/// Makes steps of a millisecond, whole or divided, and keeps whether the library reported one of these steps
+/// as too long.
 class Stepper {
  public:
   Stepper(World& world, bool is_divided) : world_(world), is_divided_(is_divided) {}

@@ -73,7 +73,7 @@ Mesh meshOf(const Roll& roll) {
   std::vector<std::array<double, 2>> profile;
   const double r_m = roll.radius_m;
   if (roll.is_sphere) {
-    const int rings = 2 * (roll.sides / 4);  // even, so that one of them is the equator
+    const int rings = 2 * (roll.sides / 4);  // an even number, so that one ring is the equator
     for (int i = 0; i <= rings; ++i) {
       const double latitude_rad = kPi * (static_cast<double>(i) / rings - 0.5);
       const bool is_pole = i == 0 || i == rings;

@@ -19,7 +19,8 @@ class BoxUnion {
 
   [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
   [[nodiscard]] MassProperties mass() const;
-  /// Distance to the union. Inside, it is minus the distance to the nearest point that is not inside.
+  /// Distance to the union. Inside the union, the result is minus the distance to the nearest point that is
+  /// not inside.
   [[nodiscard]] double distance(const Vec3& p) const;
 
  private:

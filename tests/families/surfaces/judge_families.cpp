@@ -303,7 +303,7 @@ scenes::Scene dropScene(int member) {
 }
 
 /// Difference between the depth that simulate() prints and the depth of the lowest vertex at the ends of all
-/// steps. The printed depth may be greater, since it is also found between the ends.
+/// steps. The printed depth may be greater, since simulate() also finds depths between the ends of steps.
 double printedError_um(int member) {
   scenes::Scene scene = dropScene(member);
   const Mesh mesh = scene.parts[1].part.mesh;

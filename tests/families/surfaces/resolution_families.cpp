@@ -84,7 +84,7 @@ double slideOf(double speed_m_s) {
 
 constexpr int kSides = 96;  // sides of round parts: the flats are inside the circle by 5.4e-4 of the radius
 
-// Pin and hole have their corners at the same angles, but the pin may turn. The corners of the pin must then
+// Pin and hole have their corners at the same angles, but the pin may turn. The corners of a turned pin must
 // still fit between the flats of the hole.
 double holeRadius(const Made& made) {
   return 0.5 * made.size_m * (1 + made.clearance) / std::cos(std::numbers::pi / kSides);
@@ -194,8 +194,8 @@ double bytesShare(int member) {
 
 std::vector<Family> resolutionFamilies() {
   std::vector<Family> families;
-  // The bar allows the memory of the cube's voxmap, and the same again for the points, which are two voxels
-  // apart in thin parts.
+  // The bar allows the memory of the cube's voxmap, and the same amount again for the points, which are two
+  // voxels apart in thin parts.
   families.push_back({.key = "F_cost",
                       .measure = "estimated memory of the models, over that of maps of cubes of 150 mm",
                       .bar = 2,
@@ -212,8 +212,8 @@ std::vector<Family> resolutionFamilies() {
        .every = 13,
        .measured = [](int member) { return run(member).begins_apart ? run(member).depth : 1.0; },
        .describe = describe});
-  // Parts rest at a gap of at most 0.1 um if lengths are scaled so that they are 1 mm across or more; the
-  // rest of the bar is rounding.
+  // Parts rest at a gap of at most 0.1 um if lengths are scaled so that the parts are 1 mm across or more;
+  // the rest of the bar is rounding.
   families.push_back({.key = "F_place",
                       .measure = "distance from where the part comes to rest, over its size",
                       .bar = 5.1e-4,

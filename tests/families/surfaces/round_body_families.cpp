@@ -31,7 +31,7 @@ struct RoundBody {
   On on = On::Plane;
   double radius_m = 2e-3;
   int facets = 64;  ///< around
-  int rings = 32;   ///< of half a turn
+  int rings = 32;   ///< number of rings over half a turn
   Mat3 R = Mat3::Identity();
 };
 

@@ -197,8 +197,8 @@ Mesh tetrahedron(double half_m, bool is_mirrored, bool faces_in) {
   return mesh;
 }
 
-/// Error of volume, centre and inertia. For tetrahedra, whose union has the volume 4 h^3, only of volume and
-/// centre.
+/// Error of volume, centre and inertia. For tetrahedra, whose union has the volume 4 h^3, the error is only
+/// that of volume and centre.
 double massOfCrossing(int i) {
   const Crossing member = crossingMember(i);
   test::Random random(8900 + static_cast<std::uint64_t>(i));
@@ -301,12 +301,12 @@ double massOfCopies(int i) {
                    difference(solidMass(mesh), truth, size_m)});
 }
 
-// ---- three to six shells, each within the one before
+// ---- three to six shells, each within the previous shell
 
 /// Which shells face inwards, the outermost first. The outermost shell faces outwards after the repair.
 std::vector<bool> levelFacesIn(int i) {
   test::Random random(9300 + static_cast<std::uint64_t>(i));
-  if (i == 0) return {false, true, true};  // the case that was found
+  if (i == 0) return {false, true, true};  // the case in which the fault was found
   std::vector<bool> faces_in;
   for (int k = 0, n = 3 + random.index(4); k < n; ++k) faces_in.push_back(random.chance(0.5));
   return faces_in;
@@ -319,8 +319,8 @@ std::string describeLevels(int i) {
 }
 
 /// Error of the mass properties, or the number of gaps between shells whose side is wrong. A shell that faces
-/// like the outermost one adds one to the winding number inside itself, another shell subtracts one; space is
-/// solid where the winding number is above 0.
+/// like the outermost one adds one to the winding number inside itself, a shell of the opposite orientation
+/// subtracts one; space is solid where the winding number is above 0.
 double massOfLevels(int i) {
   const std::vector<bool> faces_in = levelFacesIn(i);
   test::Random random(9350 + static_cast<std::uint64_t>(i));

@@ -100,8 +100,8 @@ struct HostileRun {
 };
 
 /// Runs the sequence: the first two bytes choose gains and the hand, and each tick takes two more. After the
-/// last one the hardware works correctly again, the handle is held still, and re-arming must bring the arm
-/// back.
+/// last tick of the sequence the hardware works correctly again, the handle is held still, and re-arming must
+/// bring the arm back.
 inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require require) {
   using namespace vps;
   HostileRun run;

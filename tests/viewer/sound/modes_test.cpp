@@ -224,8 +224,8 @@ TEST(Modes, ABellsAreThoseOfThinShells) {
 }
 
 TEST(Modes, ACutBrickIsAsStiffAndHeavyAsWhatFillsIt) {
-  // Only the lower half of the brick is filled. Stretched along x, it resists with half the force of a whole
-  // brick.
+  // Only the lower half of the brick is filled. Stretched along x, the half-filled brick resists with half
+  // the force of a whole brick.
   const Vec3 size_m(2e-3, 3e-3, 4e-3);
   BrickFilling half;
   half.addShares(-Vec3::Ones(), Vec3::Ones(), 8, [](int, int, int z) { return z < 4; });

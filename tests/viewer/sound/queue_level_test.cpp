@@ -105,8 +105,8 @@ TEST(QueueLevel, AThreadThatIsOftenLateHasFewGaps) {
     }
     card.write(1e-3 * i, kBlock * std::size_t(1 + std::exchange(late, 0)));
   }
-  // There are five gaps in the first second, in which gaps do not count. Then each gap makes the reserve 1.25
-  // ms longer, and once or twice it has shrunk too far.
+  // There are five gaps in the first second, in which gaps do not count. After the first second each gap
+  // makes the reserve 1.25 ms longer, and once or twice it has shrunk too far.
   EXPECT_GE(card.gaps(), 1U);
   EXPECT_LE(card.gaps(), 10U);
 }

@@ -91,7 +91,7 @@ TEST(PartVoice, ASmallPartClicksAsLongAsItIsStruck) {
 TEST(Beeper, CountsItsBeepsAtTheirPitch) {
   Beeper beeper(kRate_hz);
   beeper.add({1760, 3});
-  beeper.add({1760, 3});  // the same warning again, while it sounds
+  beeper.add({1760, 3});  // the same warning again, while the first warning sounds
   std::vector<float> heard;
   for (int i = 0; i < kRate_hz; ++i) heard.push_back(static_cast<float>(beeper.next()));
   int beeps = 0;

@@ -64,8 +64,8 @@ class WebRunInBrowser : public testing::Test {
   }
 
   /// The user of the page takes the peg, looks from the front, and moves the peg down into its hole. In the
-  /// mouth of the hole the user also pushes it sideways by 0.5 mm, so that the wall guides it. Before the
-  /// bottom the sideways force ends, since a peg that is pressed against the wall would move within its
+  /// mouth of the hole the user also pushes the peg sideways by 0.5 mm, so that the wall guides it. Before
+  /// the bottom the sideways force ends, since a peg that is pressed against the wall would move within its
   /// clearance when it is released.
   /// @param press, move, lift  mouse or finger events at a place of the page
   void bringHome(const std::function<void(double x, double y)>& press,

@@ -370,7 +370,7 @@ TEST_F(WebHubTest, ASlowBrowserGetsFewerSnapshotsAndTheOthersAll) {
   ack(1, a_);
   turn(0.001);
   EXPECT_EQ(a_.known.bodies.at(1).second.z(), b_.known.bodies.at(1).second.z());
-  b_.is_free = false;  // its socket is full
+  b_.is_free = false;  // the socket of browser b is full
   turn(0.002);
   EXPECT_EQ(b_.shots, 301);
 }

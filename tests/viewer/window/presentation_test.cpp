@@ -86,7 +86,8 @@ std::int64_t apart(const std::map<int, std::int64_t>& a, const std::map<int, std
 }
 
 // One watcher on the same machine polls 60 times a second; the other, with a delay of 20 ms and a jitter of 5
-// ms, polls 50 times. Their times differ by the polling only, so by no more than the longer of their periods.
+// ms, polls 50 times. The times of both watchers differ by the polling only, so by no more than the longer
+// polling period.
 TEST(Presentation, TwoWatchersAreApartByNoMoreThanTheirLooks) {
   const std::int64_t after_ns = kPresentAfter_ns;
   EXPECT_LE(apart(shownBy(after_ns, 16 * kMs, 0, kMs, 1), shownBy(after_ns, 20 * kMs, 20 * kMs, 25 * kMs, 2)),
