@@ -23,7 +23,7 @@ namespace {
 
 // Greatest number of cuts of one seed; a longer seed is cut at every second byte, third, ....
 constexpr std::size_t kMaxCuts = 3000;
-constexpr int kSlow_s = 30;             // an input that takes more processor time is a failure too
+constexpr int kSlow_s = 30;  // an input that takes more processor time is a failure too
 std::string current;
 
 void keepInput() {

@@ -39,7 +39,8 @@ TEST(Screw, WithoutAThreadNothingCatches) {
   scene.steps[0].timeout_s = 20;
   const scenes::StepResult step = assembled(scene);
   EXPECT_EQ(step.verdict, scenes::Verdict::NotShown);
-  EXPECT_NE(step.reason.find("no contact like that of a thread stopped it"), std::string::npos) << step.reason;
+  EXPECT_NE(step.reason.find("no contact like that of a thread stopped it"), std::string::npos)
+      << step.reason;
 }
 
 }  // namespace
