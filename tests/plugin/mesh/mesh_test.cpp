@@ -160,7 +160,8 @@ std::string complaint(const Mesh& mesh) {
 
 TEST(Mesh, UnusableMeshesAreRefusedWithFilePartAndRemedy) {
   EXPECT_EQ(complaint(makeBox({1, 1, 1})), "");
-  EXPECT_EQ(complaint(Mesh{}), "gear.stl: part 'hub': the mesh has no triangles; export it as a triangle mesh");
+  EXPECT_EQ(complaint(Mesh{}),
+            "gear.stl: part 'hub': the mesh has no triangles; export it as a triangle mesh");
   Mesh mesh = makeBox({1, 1, 1});
   mesh.vertices[5].y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(complaint(mesh), "gear.stl: part 'hub': vertex 5 is not a number; export it again");

@@ -6,7 +6,8 @@
 namespace vps::viewer {
 
 std::string missingForWeb() {
-  return "this program was built without the web page (VPS_WEB=OFF); build it with 'cmake --preset release && "
+  return "this program was built without the web page (VPS_WEB=OFF); build it with 'cmake --preset release "
+         "&& "
          "cmake --build build/release'";
 }
 
