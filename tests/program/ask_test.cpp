@@ -154,7 +154,7 @@ TEST_F(AskProgram, RightsAreRefusedInWords) {
   ASSERT_TRUE(whoSays("render: 'pins'")) << texts();
   for (const char* what :
        {"take", "release", "rearm", "again", "gains 100", "record a.mcap", "load other.toml"})
-    expectRefused("ask " + std::string(what) + " --session " + session_, "may only be asked who is there");
+    expectRefused("ask " + std::string(what) + " --session " + session_, "only `who` is allowed here");
   expectRefused("render pins.toml --requests none --stay --session x-" + session_,
                 "contradicts --on-request and --stay");
 }

@@ -45,7 +45,7 @@ TEST_F(Program, LatencyOfWhatMakesNoContactIsRefused) {
         "pose = {position = [0, 0, 90]}\n[[step]]\npart = 'pin'\nstart = {position = [0, 0, 80]}\n");
   const Ran ran = run("view open.toml --measure-latency");
   EXPECT_EQ(ran.status, 2) << ran.err;
-  EXPECT_NE(ran.err.find("met nothing"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("touched nothing on its path"), std::string::npos) << ran.err;
 }
 
 }  // namespace

@@ -337,7 +337,7 @@ TEST(PointShell, UnusableInputIsRefusedAndTheRemedyNamed) {
     return "accepted";
   };
   // A cubic metre at 0.5 mm: 6 / 0.25e-6 * 1.3 = 31.2 million points, and 0.5 sqrt(31.2 / 16) = 0.6982.
-  EXPECT_NE(messageOf(box, 0.5 * kMm).find("699 um is enough"), std::string::npos)
+  EXPECT_NE(messageOf(box, 0.5 * kMm).find("699 um is fine enough"), std::string::npos)
       << messageOf(box, 0.5 * kMm);
   EXPECT_NE(messageOf(box, 0.5 * kMm).find("part 'hub'"), std::string::npos);
   // A needle has little area but long edges.

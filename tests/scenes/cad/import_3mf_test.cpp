@@ -413,7 +413,7 @@ TEST_F(Import3mf, WhatCannotBeReadIsRefusedInWords) {
   beams.items = R"(<item objectid="1"/><item objectid="3"/>)";
   EXPECT_NE(read(beams.bytes()).missing.find("object 'lattice' has a lattice of 2 beams"), std::string::npos);
   beams.attributes += " requiredextensions=\"b\"";
-  EXPECT_NE(refusalOf(beams).find("has a lattice of beams, which the file says is needed"),
+  EXPECT_NE(refusalOf(beams).find("has a lattice of beams, which the file marks as required"),
             std::string::npos);
 }
 

@@ -88,7 +88,7 @@ TEST_F(HeadStream, AViewerHasOneStream) {
   EXPECT_NE(refusal("topic = '/anna'\nrecorded = 'anna.csv'\n").find("leave out 'topic'"), std::string::npos);
   EXPECT_NE(refusal("topic = 'anna head'\n").find("expected a topic of ROS 2"), std::string::npos);
   EXPECT_NE(refusal("topic = '/anna'\nros_domain = 400\n").find("ros_domain"), std::string::npos);
-  EXPECT_NE(refusal("").find("or its stream"), std::string::npos);
+  EXPECT_NE(refusal("").find("or a stream of poses"), std::string::npos);
 }
 
 TEST_F(HeadStream, ATrackCutAtEveryByteIsReadOrRefused) {

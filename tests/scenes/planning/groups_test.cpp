@@ -111,7 +111,7 @@ TEST_F(SceneGroups, MistakesAreSaidWithLineAndKey) {
   says(group + "parts = ['a', 'bb']\n", "23", "did you mean 'b'?");
   says(group + "parts = ['a', 'c']\n", "23", "only one is scenery");
   says(group + "parts = ['a', 'b']\nmass = 3\n", "24", "mass");
-  says("[[group]]\nname = 'plate'\nparts = ['a', 'b']\n", "22", "which a part has");
+  says("[[group]]\nname = 'plate'\nparts = ['a', 'b']\n", "22", "which is also the name of a part");
   says(group + "parts = ['a', 'b']\n[[group]]\nname = 'plug'\nparts = ['plate', 'c']\n", "26", "scenery");
   says(group + "parts = ['a', 'b']\n[[step]]\npart = 'b'\n", "25", "is part of the group 'plug'");
 }
