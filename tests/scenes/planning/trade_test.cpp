@@ -305,7 +305,7 @@ TEST(FidelityChoice, TakesOneSideForARateAloneButNotWithATolerance) {
   scene = ballOnPlate();
   const FidelityChoice kept = chooseFidelity(scene, wish);
   EXPECT_EQ(kept.fidelity.sides, Sides::Both);
-  EXPECT_NE(kept.failure_reason.find("more tolerance"), std::string::npos) << kept.failure_reason;
+  EXPECT_NE(kept.failure_reason.find("larger tolerance"), std::string::npos) << kept.failure_reason;
 }
 
 TEST(FidelityChoice, NamesTheBoundThatCannotBeKept) {
