@@ -97,7 +97,7 @@ TEST_F(KeptCad, ThatIsDamagedOrForeignIsReadAgainAndReplaced) {
   std::ofstream(file, std::ios::binary) << "something else";
   EXPECT_EQ(import::keptBytes(importCad(step(), settings_)), import::keptBytes(first));
   ASSERT_EQ(warnings_.size(), 1U);
-  EXPECT_NE(warnings_[0].find("made again"), std::string::npos) << warnings_[0];
+  EXPECT_NE(warnings_[0].find("computed again"), std::string::npos) << warnings_[0];
   // The entry is complete, but does not contain parts.
   cache_.keep(madeFrom(), "something else");
   EXPECT_EQ(import::keptBytes(importCad(step(), settings_)), import::keptBytes(first));

@@ -385,7 +385,7 @@ TEST_F(ForeignVdb, OtherGridsAreRefusedWithARemedy) {
   }
   grid = ball(2);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(2.5 * kVoxel_m));
-  expect(grid, "band of 0.8 voxels; at least 1 is needed");
+  expect(grid, "band of 0.8 voxels; at least 1 voxel is needed");
 
   grid = ball();
   auto transform = openvdb::math::Transform::createLinearTransform(kVoxel_m);

@@ -236,14 +236,14 @@ const std::vector<Oddity>& oddities() {
          f.resources = R"(<basematerials id="5"><base name="a" displaycolor="#FF0000"/></basematerials>)";
          f.plate += R"( pid="5" pindex="7")";
        },
-       "plate", "block", kGray, "not in the file"},
+       "plate", "block", kGray, "missing in the file"},
       {"a triangle's colour that is not in the file",
        [](File3mf& f) {
          f.resources = R"(<basematerials id="5"><base name="a" displaycolor="#FF0000"/></basematerials>)";
          f.plate += R"( pid="5" pindex="0")";
          f.triangles = R"( pid="5" p1="9")";
        },
-       "plate", "block", kRed, "not in the file"},
+       "plate", "block", kRed, "missing in the file"},
       {"components",
        [](File3mf& f) {
          // One component rotates the object by 90 degrees about z, which moves (0, -10, 0) to (10, 0, 0), and
@@ -309,7 +309,7 @@ TEST_F(Import3mf, HasTheUnitsNamesColoursAndPlacesOfTheFile) {
         expectColor(cad.parts[1].color, kGray, what);
         for (const std::string& warning : cad.warnings)
           EXPECT_TRUE((oddity.has_remark && warning.find(oddity.has_remark) != std::string::npos) ||
-                      warning.find("is the unit right") != std::string::npos ||
+                      warning.find("check the unit") != std::string::npos ||
                       warning.find("whose 32-bit numbers") != std::string::npos)
               << what << ": " << warning;
       } catch (const LoadError& e) {
@@ -376,7 +376,7 @@ TEST_F(Import3mf, TheUnitIsThatOfTheRootModel) {
   file.unit = " unit=\"furlong\"";
   const ImportedCad assumed = read(file.bytes());
   EXPECT_FALSE(assumed.states_unit);
-  EXPECT_TRUE(hasWarning(assumed, "'furlong', which 3MF does not have: millimetres are assumed"));
+  EXPECT_TRUE(hasWarning(assumed, "'furlong', which 3MF does not define: millimetres are assumed"));
   EXPECT_NEAR(width_m(assumed), 4e-3, 1e-9);
   ImportSettings settings;
   settings.unit_m = 1e-2;
