@@ -142,7 +142,7 @@ TEST_F(Program, AFileThatACalibrationCannotWriteIsLeftAsItWas) {
   };
   write("wall.toml", kRoom + kHead);
   expectLeft("--write-scene scene.toml", "--display");
-  expectLeft("--write-display wall.toml --display wall.toml", "give one");
+  expectLeft("--write-display wall.toml --display wall.toml", "give only one");
   expectLeft("--write-display wall.toml --write-scene missing.toml", "missing.toml: no such file");
   expectLeft("--write-display wall.toml --write-scene wall.toml", "wall.toml");
   expectLeft("--write-display scene.toml", "scene.toml");
