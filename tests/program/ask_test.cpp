@@ -112,7 +112,8 @@ TEST_F(AskProgram, AnotherSceneIsSentOnceRunsAndIsRecorded) {
   EXPECT_NE(who_.find("run_2.mcap"), std::string::npos) << who_;
   const std::string hash = who_.substr(who_.find("(scene ") + 7, 32);
   EXPECT_TRUE(fs::exists(folder_ / "cache/scenes" / (hash + ".scene")));
-  expectRefused("ask load 00000000000000000000000000000000 --session " + session_, "is not known here");
+  expectRefused("ask load 00000000000000000000000000000000 --session " + session_,
+                "is unknown to this vps render");
   ASSERT_TRUE(whoSays("no run")) << texts();  // the run has ended, and render waits
   EXPECT_EQ(ask("stop-recording").status, 0);
   EXPECT_EQ(ask("load " + hash).status, 0);

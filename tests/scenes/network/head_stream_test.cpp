@@ -72,7 +72,7 @@ TEST_F(HeadStream, WhatIsWrongInATrackIsSaidWithItsLine) {
     const std::string said = refusal("recorded = 'anna.csv'\n");
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
-  says(kTrack + "0.5, 0, -1, 0.5, 0, 0, 0, 1\n", "anna.csv:4: is not later");
+  says(kTrack + "0.5, 0, -1, 0.5, 0, 0, 0, 1\n", "anna.csv:4: has a time that is not later");
   says(kTrack + "2, 0, -1, 0.5, 0, 0, 1, 1\n", "anna.csv:4: has no rotation in columns 5 to 8");
   says(kTrack + "2, 0, -1\n", "anna.csv:4: expected 8 numbers");
   says(kTrack + "2, nan, -1, 0.5, 0, 0, 0, 1\n", "anna.csv:4: expected 8 numbers");

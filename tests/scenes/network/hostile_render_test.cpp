@@ -175,7 +175,7 @@ TEST_F(HostileRender, StiffnessIsBoundedByWhatTheDevicesPassivityAllows) {
 TEST_F(HostileRender, AStepThatTheSceneDoesNotHaveIsRefusedInWords) {
   RequestMessage begin{.command = device::SyncEventKind::Begin};
   begin.step = static_cast<std::uint32_t>(scene_.steps.size());
-  EXPECT_NE(std::string(ask(begin).refusal.data()).find("names step 3, but the scene has 2 steps"),
+  EXPECT_NE(std::string(ask(begin).refusal.data()).find("requests step 3, but the scene has 2 steps"),
             std::string::npos);
   RequestMessage back{.command = device::SyncEventKind::GoBack};
   back.step =

@@ -121,7 +121,7 @@ TEST_F(NetworkLink, APeerThatLiesAboutTimeIsReportedOnceAndItsBadBeatsAreCounted
   ASSERT_EQ(said.size(), 1u);
   EXPECT_NE(said[0].find("the device node"), std::string::npos) << said[0];
   EXPECT_TRUE(doubts.takeNew(*render_).empty());
-  EXPECT_NE(ClockDoubts::summary(*render_).find("of the device node"), std::string::npos);
+  EXPECT_NE(ClockDoubts::summary(*render_).find("from the device node"), std::string::npos);
   const std::uint64_t before = render_->refusedBeats();
   ASSERT_TRUE(soon([&] {
     out.write("no beat");
