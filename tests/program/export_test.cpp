@@ -80,7 +80,8 @@ TEST_F(Export, WhatCannotBeExportedIsRefusedAndLeavesNoFile) {
 TEST_F(Export, AQueryOfModelFilesRefusesWhatTheyCannotGive) {
   ASSERT_EQ(run("export plate.stl --units mm --voxel 1mm --spacing 2mm -o plate.vdb -o plate.ply").status, 0);
   expectRefused("query plate.ply pin.stl --units mm", "plate.ply: is a pointshell");
-  expectRefused("query pin.stl plate.vdb --units mm", "plate.vdb: is a level set, but B provides the pointshell");
+  expectRefused("query pin.stl plate.vdb --units mm",
+                "plate.vdb: is a level set, but B provides the pointshell");
   expectRefused("query plate.vdb plate.ply --voxel 1mm",
                 "plate.vdb: holds a voxmap already; leave --voxel out");
   expectRefused("query plate.vdb plate.ply --spacing 1mm", "leave --spacing out");
