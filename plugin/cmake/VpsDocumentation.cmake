@@ -27,5 +27,5 @@ set(DOXYGEN_QUIET YES)
 # Not every parameter needs a sentence: @param describes parameters that their names do not explain.
 set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)
 set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
-doxygen_add_docs(documentation ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/INSTALL.md ${documented_texts} ${documented_folders}
+doxygen_add_docs(documentation ${PROJECT_SOURCE_DIR}/README.md ${documented_texts} ${documented_folders}
                  COMMENT "Writing ${DOXYGEN_OUTPUT_DIRECTORY}/html/index.html")
