@@ -297,7 +297,8 @@ TEST_F(Scenario, AStoppedRunKeepsTheStepsThatWereDoneAndSaysWhere) {
         "while [ ! -e run/unfinished.json ] && kill -0 $!; do sleep 0.05; done\nkill -TERM $!\nwait $!\n");
   std::system(("cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + folder_.string() + ".cache' sh stop.sh")
                   .c_str());
-  EXPECT_NE(slurp(folder_ / "out.txt").find("the results so far are in run/unfinished.json"), std::string::npos)
+  EXPECT_NE(slurp(folder_ / "out.txt").find("the results so far are in run/unfinished.json"),
+            std::string::npos)
       << slurp(folder_ / "out.txt") << slurp(folder_ / "err.txt");
   const json kept = json::parse(slurp(folder_ / "run/unfinished.json"));
   ASSERT_EQ(kept["steps"].size(), 1u);
