@@ -177,7 +177,7 @@ function(vps_precompile target)
   endif()
 endfunction()
 
-# Compiles the sources of one folder together, eight at a time, or as many as the third argument says: what headers instantiate is compiled once for
+# Compiles the sources of one folder together, eight at a time, or as many as the third argument says. What headers instantiate is compiled once for
 # all of them. A source with compile options of its own stays alone. File-local names of one batch must differ.
 function(vps_unite_folders target sources)
   if(NOT VPS_UNITY)
@@ -250,6 +250,7 @@ function(vps_add_test name)
   target_compile_definitions(${name} PRIVATE VPS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   vps_compile_options(${name})
   target_precompile_headers(${name} REUSE_FROM vps_test_support)
+  vps_unite_folders(${name} "${ARG_SOURCES}")
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)
   endif()

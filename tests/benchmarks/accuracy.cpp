@@ -9,13 +9,12 @@
 
 #include "support/fit.h"
 #include "support/screw.h"
+#include "support/units.h"
 #include "vps/mesh_distance.h"
 #include "vps/voxmap.h"
 
 namespace vps::bench {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 struct Shape {
   std::string name;

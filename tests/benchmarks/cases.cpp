@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cases.h"
+#include "support/units.h"
 
 #include <memory>
 
 namespace vps::bench {
 namespace {
 
-constexpr double kMm = 1e-3;
 constexpr int kCheckedSteps = 12;
 
 /// A row that steps through a motion. If `patch` > 0, the row uses only so many neighbouring points of the

@@ -9,11 +9,10 @@
 
 #include "measure.h"
 #include "scene_parts.h"
+#include "support/units.h"
 
 namespace vps::bench {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 std::string number(double value) {
   char text[32];

@@ -16,11 +16,6 @@ inline constexpr double kRounding_m = kIsDouble ? 1e-9 : 5e-8;
 inline constexpr double kSpacing_m = 1e-3;
 inline constexpr double kHalf_m = 0.005;
 
-inline const Built& cube() {
-  static const Built built = build(makeBox(Vec3::Constant(2 * kHalf_m)), 7850, 0.5e-3, kSpacing_m);
-  return built;
-}
-
 inline btVector3 at(double x, double y, double z) {
   return {bullet::toBt(x), bullet::toBt(y), bullet::toBt(z)};
 }

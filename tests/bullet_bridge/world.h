@@ -59,6 +59,29 @@ inline Built steelBox() {
 inline Built plate() {
   return build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.5e-3, 1e-3);
 }
+/// With its center of mass at the origin.
+inline Mesh centered(Mesh mesh) {
+  const Vec3 com = massProperties(mesh).com;
+  for (Vec3& v : mesh.vertices) v -= com;
+  return mesh;
+}
+
+/// A steel cube of 10 mm; its band is 2 mm.
+inline const Built& cube() {
+  static const Built built = build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
+  return built;
+}
+/// The same plate as plate(), built once in a program.
+inline const Built& onePlate() {
+  static const Built built = plate();
+  return built;
+}
+/// A box of 20, 40 and 60 mm without a voxmap or points.
+inline bullet::ShapeModels boxMesh() {
+  bullet::ShapeModels models;
+  models.mesh = std::make_shared<const Mesh>(makeBox(Vec3(0.02, 0.04, 0.06)));
+  return models;
+}
 
 class World {
  public:

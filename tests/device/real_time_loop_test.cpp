@@ -15,7 +15,7 @@ namespace {
 using test::FakeClock;
 using test::PlainDevice;
 
-constexpr std::int64_t kPeriod_ns = 1'000'000;
+constexpr std::int64_t kLoopPeriod_ns = 1'000'000;
 
 LoopSettings plainSettings(DeviceEventQueue& events) {
   LoopSettings settings;
@@ -33,7 +33,7 @@ struct Rig {
   CouplingPort port;
   DeviceEventQueue events;
   RealTimeLoop loop;
-  Metronome metronome{kPeriod_ns, clock};
+  Metronome metronome{kLoopPeriod_ns, clock};
   double physics_s = 0;
 
   explicit Rig(RealTimeSettings settings = {})

@@ -33,7 +33,7 @@ TEST(Strategy, EachHasANameARowInTheDocumentationAndAMaker) {
   EXPECT_EQ(static_cast<int>(OperatorStrategy::ScrewOn), 11);
 }
 
-constexpr double kDt_s = 1e-3;
+constexpr double kTick_s = 1e-3;
 
 /// A part that a spring couples to the hand, pressed on a plane with Coulomb friction: it follows the hand at
 /// a distance of up to friction / spring.
@@ -66,8 +66,8 @@ double reachOfSearch(double friction_N) {
   search->start(situation, sliding.feel(0, situation.habits.search_N));
   double farthest_m = 0;
   Outcome outcome = Outcome::GoingOn;
-  for (double t_s = 0; outcome == Outcome::GoingOn && t_s < 60; t_s += kDt_s) {
-    outcome = search->step(sliding.feel(t_s, situation.habits.search_N), kDt_s);
+  for (double t_s = 0; outcome == Outcome::GoingOn && t_s < 60; t_s += kTick_s) {
+    outcome = search->step(sliding.feel(t_s, situation.habits.search_N), kTick_s);
     sliding.moveHand(search->move().across_m);
     farthest_m = std::max(farthest_m, sliding.part_m.norm());
   }
@@ -95,9 +95,9 @@ TEST(SpiralSearch, EndsWhereThePartDropsWhileItIsLowered) {
   const std::unique_ptr<Strategy> search = makeSpiralSearch();
   search->start(situation, feel);
   Outcome outcome = Outcome::GoingOn;
-  for (; outcome == Outcome::GoingOn && feel.time_s < 10; feel.time_s += kDt_s) {
-    outcome = search->step(feel, kDt_s);
-    feel.along_m = std::min(0.0, feel.along_m + 10e-3 * kDt_s);
+  for (; outcome == Outcome::GoingOn && feel.time_s < 10; feel.time_s += kTick_s) {
+    outcome = search->step(feel, kTick_s);
+    feel.along_m = std::min(0.0, feel.along_m + 10e-3 * kTick_s);
     feel.resist_N = feel.along_m < 0 ? 0 : situation.habits.search_N;
   }
   EXPECT_EQ(outcome, Outcome::Done);

@@ -12,14 +12,14 @@ namespace vps::dynamics {
 namespace {
 
 constexpr double kRingHeight_m = 10e-3, kBore_m = 5e-3,
-                 kClearance_m = 0.1e-3;  // radius of the bore; diametral clearance
-constexpr int kSegments = 256;
+                 kRingClearance_m = 0.1e-3;  // radius of the bore; diametral clearance
+constexpr int kRingSegments = 256;
 
 // 256 x 2 x (2 x 12 + 2 x 8) = 20,480 triangles.
 Mesh makeRing() {
   const Vec3 up(0, 0, kRingHeight_m / 2);
-  return test::sweptSections(kSegments, [&](int i) {
-    const double angle_rad = test::kTurn_rad * (i % kSegments) / kSegments;
+  return test::sweptSections(kRingSegments, [&](int i) {
+    const double angle_rad = test::kTurn_rad * (i % kRingSegments) / kRingSegments;
     const Vec3 in = test::polar(kBore_m, angle_rad, 0), out = test::polar(10e-3, angle_rad, 0);
     std::vector<Vec3> loop;
     test::appendLine(loop, out - up, out + up, 12);
@@ -32,9 +32,10 @@ Mesh makeRing() {
 
 // A plate whose top is z = 0, with a chamfered peg of 20 mm on it.
 Mesh makePegOnPlate() {
-  const double r = kBore_m - kClearance_m / 2;
+  const double r = kBore_m - kRingClearance_m / 2;
   return test::lathe(
-      {{0, -5e-3}, {15e-3, -5e-3}, {15e-3, 0}, {r, 0}, {r, 19e-3}, {r - 1e-3, 20e-3}, {0, 20e-3}}, kSegments);
+      {{0, -5e-3}, {15e-3, -5e-3}, {15e-3, 0}, {r, 0}, {r, 19e-3}, {r - 1e-3, 20e-3}, {0, 20e-3}},
+      kRingSegments);
 }
 
 }  // namespace

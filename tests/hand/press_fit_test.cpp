@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A pin that is pressed in: physics lets it pass, the judge allows the declared interference, and the result
-// states the force.
+// A pin that is assembled in: physics lets it pass, the judge allows the declared interference, and the
+// result states the force.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ scenes::Scene pinScene(double declared_m, double youngs_modulus_Pa) {
   return scene;
 }
 
-scenes::StepResult assembled(scenes::Scene scene) {
+scenes::StepResult pressed(scenes::Scene scene) {
   scenes::AssembleOptions options;
   options.judge_stride = 100;
   return scenes::assemble(scene, options).steps.at(0);
@@ -40,7 +40,7 @@ double force_N(double modulus_Pa, double interference_m, double length_m) {
 }
 
 TEST(PressFit, ASteelPinFitsButTheHandIsNotStrongEnough) {
-  const scenes::StepResult step = assembled(pinScene(12e-6, 210e9));
+  const scenes::StepResult step = pressed(pinScene(12e-6, 210e9));
   EXPECT_TRUE(step.completed) << step.failure_reason;
   EXPECT_EQ(step.verdict, scenes::Verdict::NotShown);
   // 8.5 to 9.5 mm of the pin are in the bore; the flats of the bore add 0.03 % to its size.
@@ -53,15 +53,15 @@ TEST(PressFit, ASteelPinFitsButTheHandIsNotStrongEnough) {
 }
 
 TEST(PressFit, ASoftPinGoesIn) {
-  const scenes::StepResult step = assembled(pinScene(12e-6, 0.5e9));
+  const scenes::StepResult step = pressed(pinScene(12e-6, 0.5e9));
   EXPECT_LT(step.press_needed_N, 15);
   EXPECT_GT(step.press_needed_N, 0);
   EXPECT_EQ(step.verdict, scenes::Verdict::Fits) << step.reason;
 }
 
 TEST(PressFit, MoreThanDeclaredIsBlocked) {
-  EXPECT_EQ(assembled(pinScene(0, 210e9)).verdict, scenes::Verdict::Blocked);
-  EXPECT_EQ(assembled(pinScene(6e-6, 210e9)).verdict, scenes::Verdict::Blocked);
+  EXPECT_EQ(pressed(pinScene(0, 210e9)).verdict, scenes::Verdict::Blocked);
+  EXPECT_EQ(pressed(pinScene(6e-6, 210e9)).verdict, scenes::Verdict::Blocked);
 }
 
 }  // namespace

@@ -125,6 +125,13 @@ inline Mesh unevenCylinder(double radius_m, double length_m, std::uint32_t colum
   return mesh;
 }
 
+/// A screw with a round head; its shank points downwards from z = 0.
+inline Mesh headed(double shank_m, double length_m, double head_m, double height_m) {
+  return test::lathe(
+      {{0, -length_m}, {shank_m, -length_m}, {shank_m, 0}, {head_m, 0}, {head_m, height_m}, {0, height_m}},
+      64);
+}
+
 /// A square cup that stands on z = 0, open at the top.
 inline Mesh cup(double size_m, double wall_m) {
   const double h = size_m / 2, in = h - wall_m;

@@ -15,7 +15,7 @@ namespace {
 double drawClearance(Random& random) {
   return random.logUniform(20e-6, 500e-6);
 }
-double drawFriction(Random& random) {
+double drawFitFriction(Random& random) {
   const double values[] = {0, 0.15, 0.5};
   return values[random.index(3)];
 }
@@ -48,7 +48,7 @@ Hand drawHand(Random& random, std::size_t body, const Pose& X_WP, const Vec3& ax
 /// @param stem  index of the profile's corner at the top right of its stem; the next corner is at the top
 /// left
 Case slideInSlot(Random& random, const Polygon& profile, std::size_t stem) {
-  const double clearance_m = drawClearance(random), friction = drawFriction(random);
+  const double clearance_m = drawClearance(random), friction = drawFitFriction(random);
   const Polygon slot = enlarged(profile, clearance_m / 2);
   const std::size_t n = slot.size();
   const double width_m = 1.5 * profile[1].x() + random.uniform(3e-3, 8e-3);
@@ -79,7 +79,7 @@ Case slideInSlot(Random& random, const Polygon& profile, std::size_t stem) {
 
 /// A prism above a plate with a hole of the prism's shape, along z.
 Case insertInHole(Random& random, const Polygon& profile, bool has_floor) {
-  const double clearance_m = drawClearance(random), friction = drawFriction(random);
+  const double clearance_m = drawClearance(random), friction = drawFitFriction(random);
   double reach_m = 0;
   for (const Vec2& p : profile) reach_m = std::max(reach_m, p.norm());
   const double half_m = reach_m + random.uniform(3e-3, 8e-3);
@@ -165,7 +165,7 @@ Case drawHexagonalPeg(Random& random) {
 Case drawComb(Random& random) {
   const int teeth = 2 + random.index(4);
   const double tooth_m = random.uniform(1.5e-3, 4e-3), clearance_m = drawClearance(random);
-  const double length_m = random.uniform(4e-3, 12e-3), friction = drawFriction(random);
+  const double length_m = random.uniform(4e-3, 12e-3), friction = drawFitFriction(random);
   const double gap_m = tooth_m + clearance_m, height_m = random.uniform(4e-3, 12e-3);
   const Polygon polygon = comb(teeth, tooth_m, gap_m, length_m, random.uniform(3e-3, 6e-3));
   Case made;
@@ -189,7 +189,7 @@ Case drawComb(Random& random) {
 Case drawPuzzle(Random& random) {
   const int corners = 6 + 2 * random.index(3);
   const Polygon whole = star(random, corners);
-  const double thick_m = random.uniform(3e-3, 8e-3), friction = drawFriction(random);
+  const double thick_m = random.uniform(3e-3, 8e-3), friction = drawFitFriction(random);
   Case made = insertInHole(random, whole, true);
   const double plate_m = -made.bodies.front().mesh.vertices.front().z();
   // The star is cut from one corner through the origin to the opposite corner, with a clearance.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <random>
 
 #include "vps/pose.h"
 
@@ -50,6 +51,13 @@ class Random {
 template <typename Distribution, typename Generator>
 Vec3 drawnVector(Distribution& draw, Generator& random) {
   return {draw(random), draw(random), draw(random)};
+}
+
+/// Uniformly distributed over all directions.
+template <typename Generator>
+Vec3 drawnDirection(Generator& random) {
+  std::normal_distribution<double> normal;
+  return drawnVector(normal, random).normalized();
 }
 
 /// A rotation from four draws of a distribution of the standard library, w first; uniformly distributed over

@@ -20,7 +20,7 @@ namespace vps::bench {
 
 namespace {
 
-constexpr double kBar_s = 0.02;
+constexpr double kRecovery_s = 0.02;
 
 struct Tally {
   int kills = 0, resumed = 0;
@@ -118,7 +118,7 @@ bool killRows(int kills, const std::string& network) {
   const bool is_gone = test::NodeProcesses::waitFor([&] { return nodes.segments() == 0; }, 2);
 
   std::sort(safe_s.begin(), safe_s.end());
-  const auto late = std::count_if(safe_s.begin(), safe_s.end(), [](double s) { return s > kBar_s; });
+  const auto late = std::count_if(safe_s.begin(), safe_s.end(), [](double s) { return s > kRecovery_s; });
   char words[240];
   std::snprintf(
       words, sizeof words,

@@ -12,13 +12,9 @@ namespace vps::bullet {
 namespace {
 
 using test::Built;
+using test::cube;
 using test::SolverKind;
 using test::World;
-
-const Built& cube() {
-  static const Built built = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
-  return built;
-}
 
 // Contact points of two objects, as contactPairTest reports them.
 struct Points : btCollisionWorld::ContactResultCallback {

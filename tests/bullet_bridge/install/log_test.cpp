@@ -27,11 +27,6 @@ struct Kept {
   }
 };
 
-const test::Built& cube() {
-  static const test::Built built = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
-  return built;
-}
-
 TEST(Log, PassesMessagesOfTheChosenLevelsToTheHook) {
   testing::internal::CaptureStderr();
   Kept kept;
@@ -72,8 +67,8 @@ TEST(Log, AHookThatThrowsDoesNotStopAStep) {
 TEST(Log, ReceivesWhatAStepFindsWrong) {
   Kept kept;
   test::World world;
-  world.add(cube(), Pose(), true);
-  world.add(cube(), Pose::translation(Vec3(0, 0, 0.009)));
+  world.add(test::cube(), Pose(), true);
+  world.add(test::cube(), Pose::translation(Vec3(0, 0, 0.009)));
   world.step();
   ASSERT_FALSE(kept.messages.empty());
   EXPECT_NE(kept.messages.back().second.find("inside each other"), std::string::npos);
@@ -91,7 +86,7 @@ TEST(ForgottenInstall, IsSaidOnceByTheShape) {
     btDbvtBroadphase broadphase;
     Solver solver;
     btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
-    btRigidBody body(btScalar(0.01), nullptr, cube().shape.get(), btVector3(1, 1, 1));
+    btRigidBody body(btScalar(0.01), nullptr, test::cube().shape.get(), btVector3(1, 1, 1));
     world.addRigidBody(&body);
     const int at_first = count;
     for (int i = 0; i < 30; ++i) world.stepSimulation(toBt(1e-3), 0);

@@ -23,14 +23,9 @@ const Built& cube(double size_m) {
   return size_m < 0.015 ? small : large;
 }
 
-const Built& plate() {
-  static const Built built = test::plate();
-  return built;
-}
-
 TEST(Swap, AShapeByASmallerOneWhileItSlidesOnAnother) {
   World world;
-  world.add(plate(), Pose(), true);
+  world.add(test::onePlate(), Pose(), true);
   btRigidBody& body = world.add(cube(0.02), Pose::translation(Vec3(0, 0, 0.015)));
   body.setLinearVelocity(btVector3(toBt(0.1), 0, 0));
   world.step(20);
@@ -50,7 +45,7 @@ TEST(Swap, APartByABoxAndBack) {
   for (const bool is_plane : {false, true}) {
     World world;
     btRigidBody& under =
-        is_plane ? world.addShape(plane, 0, Vec3::Zero(), Pose()) : world.add(plate(), Pose(), true);
+        is_plane ? world.addShape(plane, 0, Vec3::Zero(), Pose()) : world.add(test::onePlate(), Pose(), true);
     btRigidBody& body = world.add(cube(0.01), Pose::translation(Vec3(0, 0, 0.0101)));
     for (btCollisionShape* shape :
          std::initializer_list<btCollisionShape*>{&box, cube(0.01).shape.get(), &box}) {
@@ -67,7 +62,7 @@ TEST(Swap, APartByABoxAndBack) {
 
 TEST(Swap, AHullByAnotherWithTheSameBoundingBox) {
   World world;
-  world.add(plate(), Pose(), true);
+  world.add(test::onePlate(), Pose(), true);
   const btScalar h = toBt(0.005);
   btConvexHullShape wedge, octahedron;
   for (const btVector3& p : {btVector3(h, h, h), btVector3(-h, h, h), btVector3(-h, -h, -h),

@@ -13,15 +13,7 @@ namespace vps::bullet {
 namespace {
 
 using test::Built;
-
-const Built& cube() {
-  static const Built built = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
-  return built;
-}
-const Built& plate() {
-  static const Built built = test::plate();
-  return built;
-}
+using test::cube;
 
 /// A world of multibodies with a fixed plate, whose top is at z = 5 mm.
 struct MultiWorld {
@@ -30,7 +22,7 @@ struct MultiWorld {
   btDbvtBroadphase broadphase;
   btMultiBodyConstraintSolver solver;
   btMultiBodyDynamicsWorld world{&dispatcher, &broadphase, &solver, &config};
-  btRigidBody ground{0, nullptr, plate().shape.get()};
+  btRigidBody ground{0, nullptr, test::onePlate().shape.get()};
   std::vector<std::unique_ptr<btMultiBody>> bodies;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
 
@@ -38,7 +30,7 @@ struct MultiWorld {
     install(dispatcher);
     tuneWorld(world);
     world.setGravity(btVector3(0, 0, toBt(-9.81)));
-    ground.setWorldTransform(toBt(plate().frame.X_PB));
+    ground.setWorldTransform(toBt(test::onePlate().frame.X_PB));
     world.addRigidBody(&ground);
   }
   ~MultiWorld() {

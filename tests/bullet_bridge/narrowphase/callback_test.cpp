@@ -14,7 +14,7 @@ using test::Built;
 using test::SolverKind;
 using test::World;
 
-const Built& cube() {
+const Built& fineCube() {
   static const Built built = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 0.5e-3);
   return built;
 }
@@ -82,19 +82,19 @@ class Callbacks : public testing::Test {
     gContactEndedCallback = nullptr;
     gContactDestroyedCallback = nullptr;
   }
-  /// A cube rests on another cube for some steps and is then lifted or removed. Both bodies are parts, or
-  /// both are Bullet's boxes.
+  /// A cube rests on another cube for some steps and is then lifted or removed. Both bodies are
+  /// parts, or both are Bullet's boxes.
   Calls rest(bool is_part, int steps, bool is_lifted) {
     calls_ = {};
     World world;
     btBoxShape box(btVector3(toBt(0.005), toBt(0.005), toBt(0.005)));
-    const double mass_kg = cube().frame.mass_kg;
+    const double mass_kg = fineCube().frame.mass_kg;
     if (is_part)
-      world.add(cube(), Pose(), true);
+      world.add(fineCube(), Pose(), true);
     else
       world.addShape(box, 0, Vec3::Zero(), Pose());
-    btRigidBody& body = is_part ? world.add(cube(), Pose::translation(Vec3(0, 0, 0.01)))
-                                : world.addShape(box, mass_kg, cube().frame.inertia_kg_m2,
+    btRigidBody& body = is_part ? world.add(fineCube(), Pose::translation(Vec3(0, 0, 0.01)))
+                                : world.addShape(box, mass_kg, fineCube().frame.inertia_kg_m2,
                                                  Pose::translation(Vec3(0, 0, 0.01)));
     body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
     world.step(steps);
@@ -149,8 +149,8 @@ TEST_F(Callbacks, ACallbacksFrictionStaysWithItsPoint) {
     calls_.friction = friction;
     World world;
     world.world->setGravity(btVector3(toBt(4), 0, toBt(-6)));
-    world.add(cube(), Pose(), true);
-    btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.01)));
+    world.add(fineCube(), Pose(), true);
+    btRigidBody& body = world.add(fineCube(), Pose::translation(Vec3(0, 0, 0.01)));
     body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
     world.step(30);
     // In free motion the body would move by a dt^2 n (n + 1) / 2 in n steps. Bullet's solver in single
@@ -190,8 +190,8 @@ TEST(NearCallback, AHostsOwnResultIsAStepAndNoQuery) {
     } else {
       world.dispatcher.setNearCallback(ownNearCallback);
     }
-    world.add(cube(), Pose(), true);
-    btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.0101)));
+    world.add(fineCube(), Pose(), true);
+    btRigidBody& body = world.add(fineCube(), Pose::translation(Vec3(0, 0, 0.0101)));
     world.step(200);
     EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 5e-6);
   }

@@ -17,7 +17,7 @@ using test::placesAfter;
 using test::SolverKind;
 using test::World;
 
-const Built& cube() {
+const Built& largeCube() {
   static const Built built = test::build(makeBox(Vec3::Constant(0.02)), 7850, 0.5e-3, 1e-3);
   return built;
 }
@@ -73,7 +73,7 @@ TEST(Compound, StopsAFallingPartAtItsSurface) {
       for (btCollisionShape* child : std::initializer_list<btCollisionShape*>{&box, slab().shape.get()})
         for (const bool is_twice : {false, true}) {
           Nested floor(*child, is_twice);
-          const Fall fall = dropped(*cube().shape, *floor.shape, dt_s, solver);
+          const Fall fall = dropped(*largeCube().shape, *floor.shape, dt_s, solver);
           EXPECT_LT(fall.deepest_m, kRest_m) << child->getName() << dt_s << is_twice;
           EXPECT_NEAR(fall.rest_m, 0, kRest_m) << child->getName() << dt_s << is_twice;
         }
@@ -88,7 +88,7 @@ TEST(Compound, OfPartsStopsAtTheSurfaceOfEverythingElse) {
       for (btCollisionShape* floor : std::initializer_list<btCollisionShape*>{
                &box, &plane, slab().shape.get(), boxes.shape, slabs.shape})
         for (const bool is_twice : {false, true}) {
-          Nested falling(*cube().shape, is_twice);
+          Nested falling(*largeCube().shape, is_twice);
           const Fall fall = dropped(*falling.shape, *floor, dt_s, solver);
           EXPECT_LT(fall.deepest_m, kRest_m) << floor->getName() << dt_s << is_twice;
           EXPECT_NEAR(fall.rest_m, 0, kRest_m) << floor->getName() << dt_s << is_twice;
@@ -100,7 +100,7 @@ TEST(Compound, FollowsChildrenThatAreAddedMovedAndRemoved) {
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
   world.addShape(plane, 0, Vec3::Zero(), Pose());
   btCompoundShape compound;
-  compound.addChildShape(btTransform::getIdentity(), cube().shape.get());
+  compound.addChildShape(btTransform::getIdentity(), largeCube().shape.get());
   btRigidBody& body =
       world.addShape(compound, 0.06, Vec3::Constant(4e-6), Pose::translation(Vec3(0, 0, 0.01)));
   body.setAngularFactor(0);
@@ -113,7 +113,7 @@ TEST(Compound, FollowsChildrenThatAreAddedMovedAndRemoved) {
   EXPECT_NEAR(height_m(200), 0.005, kRest_m);
   const auto second = std::make_unique<btBoxShape>(halfSize(Vec3::Constant(0.02)));
   compound.addChildShape(toBt(Pose::translation(Vec3(0.04, 0, 0.005))), second.get());
-  compound.removeChildShape(cube().shape.get());
+  compound.removeChildShape(largeCube().shape.get());
   EXPECT_NEAR(height_m(200), 0.005, 1e-4);  // one of Bullet's boxes
   compound.removeChildShape(second.get());
   EXPECT_LT(height_m(100), -0.02);
@@ -136,11 +136,11 @@ TEST(Compound, AnswersQueriesWithTheChildThatIsNearest) {
   World world;
   btCompoundShape compound;
   for (const double x : {-0.1, 0.0, 0.1})
-    compound.addChildShape(toBt(Pose::translation(Vec3(x, 0, 0))), cube().shape.get());
+    compound.addChildShape(toBt(Pose::translation(Vec3(x, 0, 0))), largeCube().shape.get());
   btRigidBody& row = world.addShape(compound, 0, Vec3::Zero(), Pose());
   for (const double gap_m : {1e-3, 15e-3})
     for (const int child : {0, 1, 2}) {
-      btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0.1 * (child - 1), 0, 0.02 + gap_m)));
+      btRigidBody& body = world.add(largeCube(), Pose::translation(Vec3(0.1 * (child - 1), 0, 0.02 + gap_m)));
       Nearest near(2 * gap_m), reverse(2 * gap_m), out_of_reach(0.5 * gap_m);
       world.world->contactPairTest(&row, &body, near);
       world.world->contactPairTest(&body, &row, reverse);
@@ -157,7 +157,7 @@ TEST(Compound, AsksBulletsCallbackForEachPairOfChildren) {
   btBoxShape box(halfSize(Vec3(0.2, 0.2, 0.02)));
   Nested floor(box, false);
   gCompoundChildShapePairCallback = [](const btCollisionShape*, const btCollisionShape*) { return false; };
-  const Fall fall = dropped(*cube().shape, *floor.shape, 1e-3, SolverKind::Stock);
+  const Fall fall = dropped(*largeCube().shape, *floor.shape, 1e-3, SolverKind::Stock);
   gCompoundChildShapePairCallback = nullptr;
   EXPECT_GT(fall.deepest_m, 0.5);
 }

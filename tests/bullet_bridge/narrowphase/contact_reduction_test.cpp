@@ -12,7 +12,7 @@
 namespace vps::bullet {
 namespace {
 
-constexpr double kSide_m = 20e-3, kMargin_m = 20e-6;
+constexpr double kSide_m = 20e-3, kPatchMargin_m = 20e-6;
 constexpr std::size_t kLimit = 32;
 
 // Points of a square patch that lie up to 10 um above a plane; every tenth one faces down.
@@ -44,7 +44,7 @@ bool contains(const std::vector<Candidate>& candidates, const Candidate& wanted)
 }
 
 std::vector<Candidate> bySpread(std::vector<Candidate> candidates) {
-  reduceBySpread(candidates, kLimit, kSide_m, kMargin_m);
+  reduceBySpread(candidates, kLimit, kSide_m, kPatchMargin_m);
   return candidates;
 }
 std::vector<Candidate> byCell(std::vector<Candidate> candidates) {

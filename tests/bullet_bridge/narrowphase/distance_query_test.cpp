@@ -14,17 +14,13 @@ namespace vps::bullet {
 namespace {
 
 using test::Built;
+using test::cube;
 using test::World;
 
-const Built& cube() {
-  static const Built built = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);  // band 2 mm
-  return built;
-}
-
-struct Nearest : btCollisionWorld::ContactResultCallback {
+struct NearestPoint : btCollisionWorld::ContactResultCallback {
   double distance_m = 1e30;
   Vec3 n = Vec3::Zero();
-  explicit Nearest(double threshold_m) { m_closestDistanceThreshold = toBt(threshold_m); }
+  explicit NearestPoint(double threshold_m) { m_closestDistanceThreshold = toBt(threshold_m); }
   btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
                            const btCollisionObjectWrapper*, int, int) override {
     if (point.m_distance1 < distance_m) {
@@ -49,7 +45,7 @@ TEST(DistanceQuery, AnswersBeyondTheBandForEveryKindOfPartner) {
       World world;
       btRigidBody& low = world.addShape(*under, 0, Vec3::Zero(), Pose());
       btRigidBody& high = world.add(cube(), Pose::translation(Vec3(0, 0, 0.01 + gap_m)));
-      Nearest near(2 * gap_m), reverse(2 * gap_m), out_of_reach(0.5 * gap_m);
+      NearestPoint near(2 * gap_m), reverse(2 * gap_m), out_of_reach(0.5 * gap_m);
       world.world->contactPairTest(&low, &high, near);
       world.world->contactPairTest(&high, &low, reverse);
       world.world->contactPairTest(&low, &high, out_of_reach);
@@ -76,7 +72,7 @@ TEST(DistanceQuery, OfABallIsNotThatOfItsPlanesThatLeanAway) {
       btRigidBody& low =
           world.addShape(*under, 0, Vec3::Zero(), Pose::translation(Vec3(0, 0, under == &box ? -0.005 : 0)));
       btRigidBody& high = world.add(ball, Pose::translation(Vec3(0, 0, gap_m - lowest_m)));
-      Nearest near(1.5 * gap_m);
+      NearestPoint near(1.5 * gap_m);
       world.world->contactPairTest(&low, &high, near);
       // The lowest vertex need not be a point of the shell: half a spacing aside, s^2 / (8 r) = 13 um.
       EXPECT_NEAR(near.distance_m, gap_m, 13e-6 + 1e-6) << under->getName() << ' ' << gap_m;
@@ -117,7 +113,7 @@ TEST(DistanceQuery, IsTheLeastBetweenConvexBodies) {
     World world;
     btRigidBody& far = world.addShape(hull, 0, Vec3::Zero(), X_WH);
     btRigidBody& part = world.add(cube(), Pose());
-    Nearest near(0.1);
+    NearestPoint near(0.1);
     world.world->contactPairTest(&far, &part, near);
     std::vector<Vec3> placed;
     for (const Vec3& p : corners) placed.push_back(X_WH * p);

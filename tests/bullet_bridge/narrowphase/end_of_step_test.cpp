@@ -33,7 +33,7 @@ const Built& shaft() {
   static const Built built = test::build(makeCylinder(kShaft_m, 12e-3, 512), 7850, 0.25e-3, kSpacing_m);
   return built;
 }
-const Built& plate() {
+const Built& thickPlate() {
   static const Built built = test::build(makeBox(Vec3(30e-3, 30e-3, 6e-3)), 7850, 0.25e-3, kSpacing_m);
   return built;
 }
@@ -135,7 +135,7 @@ TEST(EndOfStep, ASpinningBallKeepsItsGap) {
 }
 
 TEST(EndOfStep, OnAFlatFaceItsPlaneSaysAll) {
-  const Scene scene(plate(), Vec3(1e-3, 2e-3, 3e-3 + kBall_m), Vec3(0.3, 0.1, 0));
+  const Scene scene(thickPlate(), Vec3(1e-3, 2e-3, 3e-3 + kBall_m), Vec3(0.3, 0.1, 0));
   for (std::size_t k = 0; k < scene.then.size(); ++k)
     if (scene.now[k].plane_of == 1) {
       EXPECT_EQ(scene.then[k].distance_m, scene.now[k].distance_m);

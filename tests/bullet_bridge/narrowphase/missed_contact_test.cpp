@@ -73,12 +73,6 @@ class Measured {
   std::vector<std::unique_ptr<OverlapMesh>> surfaces_;
 };
 
-Mesh centered(Mesh mesh) {
-  const Vec3 com = massProperties(mesh).com;
-  for (Vec3& v : mesh.vertices) v -= com;
-  return mesh;
-}
-
 Mesh cornerTetrahedron(double size_m) {
   return search::makeTetrahedron(Vec3::Zero(), size_m * Vec3::UnitX(), size_m * Vec3::UnitY(),
                                  size_m * Vec3::UnitZ());
@@ -91,15 +85,15 @@ double lowest_m(const Mesh& mesh, const Mat3& R) {
   return lowest;
 }
 
-class MissedContact : public testing::TestWithParam<SolverKind> {};
+class MissedContacts : public testing::TestWithParam<SolverKind> {};
 
-INSTANTIATE_TEST_SUITE_P(Each, MissedContact, testing::Values(SolverKind::Stock, SolverKind::Constraint),
+INSTANTIATE_TEST_SUITE_P(Each, MissedContacts, testing::Values(SolverKind::Stock, SolverKind::Constraint),
                          [](const auto& info) { return test::nameOf(info.param); });
 
 // At the lowest corner, the face beside an edge may slope away; an earlier version then assumed that the
 // corner lay next to the contact.
-TEST_P(MissedContact, OfALeaningTetrahedronsCornerWithAFloor) {
-  const Mesh tetrahedron = centered(cornerTetrahedron(20e-3));
+TEST_P(MissedContacts, OfALeaningTetrahedronsCornerWithAFloor) {
+  const Mesh tetrahedron = test::centered(cornerTetrahedron(20e-3));
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 12; ++i) {
@@ -113,7 +107,7 @@ TEST_P(MissedContact, OfALeaningTetrahedronsCornerWithAFloor) {
 
 // The search along the path of a fast body ended at the first place where it met anything of the other body:
 // the wall that it slides along, not the floor ahead.
-TEST_P(MissedContact, OfAFastBodyThatTouchesAWallWithTheFloor) {
+TEST_P(MissedContacts, OfAFastBodyThatTouchesAWallWithTheFloor) {
   Measured scene(GetParam());
   // Floor and wall are one part, with the wall's face at y = 0 and the floor's at z = 0.
   const Polygon section{{-6e-3, -6e-3}, {30e-3, -6e-3}, {30e-3, 0}, {0, 0}, {0, 30e-3}, {-6e-3, 30e-3}};
@@ -126,7 +120,7 @@ TEST_P(MissedContact, OfAFastBodyThatTouchesAWallWithTheFloor) {
 }
 
 // A rod is struck at one end and turns, so that its other end falls faster than predicted.
-TEST(MissedContact, OfARodThatTurnsAboutItsOtherEnd) {
+TEST(MissedContacts, OfARodThatTurnsAboutItsOtherEnd) {
   Measured scene;
   const Mesh support = makeBox({6e-3, 6e-3, 6e-3});
   scene.add(support, Pose::translation({-28e-3, 0, -3e-3}), true);
@@ -137,7 +131,7 @@ TEST(MissedContact, OfARodThatTurnsAboutItsOtherEnd) {
 
 // Two blocks rest near each other, and a third block throws one at the other, although no contact between the
 // two was predicted.
-TEST(MissedContact, OfABlockThatAnotherOneThrows) {
+TEST(MissedContacts, OfABlockThatAnotherOneThrows) {
   Measured scene;
   scene.world.world->setGravity({0, 0, 0});
   scene.addMoving(makeBox({10e-3, 10e-3, 10e-3}), Pose::translation({-10.1e-3, 0, 0}), {1, 0, 0});
@@ -155,7 +149,7 @@ TEST(MissedContact, OfABlockThatAnotherOneThrows) {
 
 // A wall stands on a floor, as a part of its own: its lower rim is in the plane in which a corner slides. The
 // nearest surface to the corner is then the wall's underside, which the corner does not face.
-TEST_P(MissedContact, OfACornerThatSlidesOverAFloorIntoAWall) {
+TEST_P(MissedContacts, OfACornerThatSlidesOverAFloorIntoAWall) {
   // The body lies on a face, with a corner ahead.
   const Mesh tetrahedron = cornerTetrahedron(12e-3);
   for (const double side_m : {0.0, 0.7e-3, 1.3e-3}) {
@@ -168,13 +162,13 @@ TEST_P(MissedContact, OfACornerThatSlidesOverAFloorIntoAWall) {
 }
 
 Mesh lyingPrism(const Polygon& section, double length_m) {
-  return centered(transformed(search::makePrism(section, {}, 0, length_m),
-                              Pose(rotationFromVector({0, std::numbers::pi / 2, 0}), Vec3::Zero())));
+  return test::centered(transformed(search::makePrism(section, {}, 0, length_m),
+                                    Pose(rotationFromVector({0, std::numbers::pi / 2, 0}), Vec3::Zero())));
 }
 
 // At the edges of a coarse cylinder the faces turn by 15 degrees. An earlier version met these edges at
 // sampled points only.
-TEST_P(MissedContact, OfTheSidesOfTwoCoarseCylinders) {
+TEST_P(MissedContacts, OfTheSidesOfTwoCoarseCylinders) {
   Polygon section;
   for (int i = 0; i < 24; ++i) {
     const double angle_rad = 2 * std::numbers::pi * i / 24;
@@ -190,7 +184,7 @@ TEST_P(MissedContact, OfTheSidesOfTwoCoarseCylinders) {
 }
 
 // An earlier version took a roof of 5 degrees for a curved surface, whose edges are left to sampled points.
-TEST_P(MissedContact, OfTwoFlatRoofsThatCross) {
+TEST_P(MissedContacts, OfTwoFlatRoofsThatCross) {
   const double rise_m = 10e-3 * std::tan(2.5 * std::numbers::pi / 180);
   const Mesh roof =
       lyingPrism({{0, -10e-3}, {rise_m, 0}, {0, 10e-3}, {-5e-3, 10e-3}, {-5e-3, -10e-3}}, 20e-3);
@@ -217,7 +211,7 @@ Mesh pocketed(double a_m, double b_m, double deep_m) {
 // Forces would move a light free key by a millimetre in one step. In an earlier version the key's edges met
 // the pocket's edges at the end of that motion, and contacts of up to 0.7 mm depth pushed a key aside that
 // did not overlap.
-TEST_P(MissedContact, OfAKeyThatStrongForcesTurnInItsPocket) {
+TEST_P(MissedContacts, OfAKeyThatStrongForcesTurnInItsPocket) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const auto drawn = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
@@ -242,11 +236,12 @@ TEST_P(MissedContact, OfAKeyThatStrongForcesTurnInItsPocket) {
 
 // Sharp bodies fall into a corner of three parts, fast and turning. All causes occur together: points on the
 // bent path of a fast turn, edges across edges, corners at rims.
-TEST(MissedContact, OfSharpBodiesThatFallTurning) {
-  const Mesh tetrahedron = centered(cornerTetrahedron(13e-3));
-  const Mesh angle = centered(search::makePrism(
+TEST(MissedContacts, OfSharpBodiesThatFallTurning) {
+  const Mesh tetrahedron = test::centered(cornerTetrahedron(13e-3));
+  const Mesh angle = test::centered(search::makePrism(
       Polygon{{0, 0}, {15e-3, 0}, {15e-3, 4e-3}, {4e-3, 4e-3}, {4e-3, 14e-3}, {0, 14e-3}}, {}, 0, 8e-3));
-  const Mesh wedge = centered(search::makePrism(Polygon{{0, 0}, {14e-3, 3e-3}, {5e-3, 12e-3}}, {}, 0, 15e-3));
+  const Mesh wedge =
+      test::centered(search::makePrism(Polygon{{0, 0}, {14e-3, 3e-3}, {5e-3, 12e-3}}, {}, 0, 15e-3));
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::normal_distribution<double> normal;

@@ -21,7 +21,7 @@ using test::SolverKind;
 using test::World;
 
 constexpr int kColumns = 384;
-constexpr double kPeg_m = 5e-3, kBore_m = 5.015e-3;  // radii
+constexpr double kPeg_m = 5e-3, kHole_m = 5.015e-3;  // radii
 constexpr double kMouth_m = 0.6e-3;                  // of a chamfer at 45 degrees
 constexpr double kChamfer_m = 0.4e-3;                // radially, at 30 degrees to the axis
 constexpr double kAside_m = 100e-6, kTop_m = 5e-3;
@@ -52,10 +52,10 @@ Mesh makeMouthedRing() {
     const auto at = [&](double radius_m, double z_m) { return polar(radius_m, angle_rad, z_m); };
     std::vector<Vec3> loop;
     appendLine(loop, at(kOuter_m, -kTop_m), at(kOuter_m, kTop_m), 8);
-    appendLine(loop, at(kOuter_m, kTop_m), at(kBore_m + kMouth_m, kTop_m), 8);
-    appendLine(loop, at(kBore_m + kMouth_m, kTop_m), at(kBore_m, kTop_m - kMouth_m), 1);
-    appendLine(loop, at(kBore_m, kTop_m - kMouth_m), at(kBore_m, -kTop_m), 8);
-    appendLine(loop, at(kBore_m, -kTop_m), at(kOuter_m, -kTop_m), 8);
+    appendLine(loop, at(kOuter_m, kTop_m), at(kHole_m + kMouth_m, kTop_m), 8);
+    appendLine(loop, at(kHole_m + kMouth_m, kTop_m), at(kHole_m, kTop_m - kMouth_m), 1);
+    appendLine(loop, at(kHole_m, kTop_m - kMouth_m), at(kHole_m, -kTop_m), 8);
+    appendLine(loop, at(kHole_m, -kTop_m), at(kOuter_m, -kTop_m), 8);
     return loop;
   });
 }
@@ -77,7 +77,7 @@ struct Entering {
   }
   /// @param depth_m  of the chamfer's upper edge below the mouth, along the mouth's normal
   btRigidBody& addPeg(double depth_m) {
-    const double mouth_z_m = kTop_m - kMouth_m + (kPeg_m + kAside_m - kBore_m);
+    const double mouth_z_m = kTop_m - kMouth_m + (kPeg_m + kAside_m - kHole_m);
     return world.add(peg,
                      Pose::translation({kAside_m, 0, mouth_z_m - std::numbers::sqrt2 * depth_m - kAxial_m}),
                      false, 0);
@@ -132,7 +132,7 @@ TEST(OneSided, AChamferSlidesOverAnEdgeWithBoundedDepth) {
   // The bore's edge touches the peg's chamfer before the chamfer's own edge touches the mouth; only the
   // bore's points would find this first contact. When the chamfer's edge touches, the bore's edge is inside
   // the chamfer by the difference of the two slopes over the overlap.
-  const double over_m = kPeg_m + kAside_m - kBore_m;
+  const double over_m = kPeg_m + kAside_m - kHole_m;
   const double bound_m = over_m * (1 - std::tan(std::numbers::pi / 6)) * std::cos(std::numbers::pi / 6);
   EXPECT_LT(deepestOnItsWayIn_m(Sides::One), bound_m);
   // 2 um: assumed; 1.2 um was measured.

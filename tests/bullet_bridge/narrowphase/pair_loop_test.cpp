@@ -27,7 +27,7 @@ using test::World;
 
 /// Tolerance: the overlap that bullet::Solver may leave after an impact, half of the contact margin. A pair
 /// tolerates 1 um; the rest is the error of the solver's velocities in a step of 1 ms.
-constexpr double kBound_m = 10e-6;
+constexpr double kPairBound_m = 10e-6;
 
 enum class Stock { Impulses, Mlcp };
 
@@ -49,23 +49,17 @@ INSTANTIATE_TEST_SUITE_P(Each, PairLoop, testing::Values(Stock::Impulses, Stock:
   return std::string(info.param == Stock::Impulses ? "Impulses" : "Mlcp");
 });
 
-Mesh centered(Mesh mesh) {
-  const Vec3 com = massProperties(mesh).com;
-  for (Vec3& v : mesh.vertices) v -= com;
-  return mesh;
-}
-
 const Built& tetrahedron() {
-  static const Built built =
-      build(centered(search::makeTetrahedron(Vec3::Zero(), {13e-3, 0, 0}, {0, 13e-3, 0}, {0, 0, 13e-3})),
-            7850, 0.5e-3, 1e-3);
+  static const Built built = build(
+      test::centered(search::makeTetrahedron(Vec3::Zero(), {13e-3, 0, 0}, {0, 13e-3, 0}, {0, 0, 13e-3})),
+      7850, 0.5e-3, 1e-3);
   return built;
 }
 
 /// A block with a step of two thirds of its height, and sharp edges all along it.
 const Built& stair() {
   static const Built built =
-      build(centered(search::makePrism(
+      build(test::centered(search::makePrism(
                 Polygon{{-20e-3, 0}, {20e-3, 0}, {20e-3, 4e-3}, {1e-3, 4e-3}, {1e-3, 12e-3}, {-20e-3, 12e-3}},
                 {}, 0, 40e-3)),
             7850, 0.5e-3, 1e-3);
@@ -108,8 +102,8 @@ TEST_P(PairLoop, FindsTheCornersAndEdgesOfAThrownBody) {
     const Vec3 w = test::drawnVector(normal, random).normalized() * 50 * uniform(random);
     const Pose X_WP(R, -38e-3 * v.normalized());
     const double depth_m = deepest_m(stock.world, stair(), tetrahedron(), X_WP, v, w);
-    EXPECT_LE(depth_m, 2 * kBound_m) << "body " << i;
-    deeper += depth_m > kBound_m;
+    EXPECT_LE(depth_m, 2 * kPairBound_m) << "body " << i;
+    deeper += depth_m > kPairBound_m;
   }
   EXPECT_LE(deeper, 1);
 }

@@ -11,10 +11,10 @@
 namespace vps::bullet {
 namespace {
 
-constexpr double kRadius_m = 10e-3, kMass_kg = 0.1, kInertia_kg_m2 = 5e-6, kStep_s = 1e-3;
+constexpr double kRadius_m = 10e-3, kMass_kg = 0.1, kInertia_kg_m2 = 5e-6, kPathStep_s = 1e-3;
 
 /// A body above a plate, and both ends of a step.
-struct Scene {
+struct PathScene {
   btSphereShape shape{btScalar(kRadius_m)};
   btRigidBody body{btRigidBody::btRigidBodyConstructionInfo(
       btScalar(kMass_kg), nullptr, &shape,
@@ -24,7 +24,7 @@ struct Scene {
 
   [[nodiscard]] StepPath path() {
     const btCollisionObject* const objects[2] = {&body, &plate};
-    return {objects, start, end, kStep_s};
+    return {objects, start, end, kPathStep_s};
   }
   /// Displacement of the body along z, as measured by a row at p.
   [[nodiscard]] double way_m(const Vec3& p) const {
@@ -43,7 +43,7 @@ Candidate at(const Vec3& p, double distance_m) {
 
 /// A wheel rolls along x by a tenth of a radian; the contact is the place that is lowest at the end.
 TEST(StepPath, TheLeverOfAWheelIsBelowItsCentre) {
-  Scene scene;
+  PathScene scene;
   const double angle_rad = 0.1;
   scene.start[0].p = Vec3(0, 0, kRadius_m);
   scene.end[0] = Pose(rotationFromVector({0, angle_rad, 0}), Vec3(angle_rad * kRadius_m, 0, kRadius_m));
@@ -58,7 +58,7 @@ TEST(StepPath, TheLeverOfAWheelIsBelowItsCentre) {
 
 /// A body turns about a corner that stays where it is, and passes over it.
 TEST(StepPath, ABodyThatTurnsAboutACornerDoesNoWorkThere) {
-  Scene scene;
+  PathScene scene;
   const double half_rad = 0.03;
   const Vec3 corner = Vec3::Zero(), arm(0, 0, kRadius_m);
   for (const double side : {-1.0, 0.3}) {
@@ -78,7 +78,7 @@ TEST(StepPath, ABodyThatTurnsAboutACornerDoesNoWorkThere) {
 
 /// The contact of a body that approaches faster than its weight moves it in a step acts where the body lands.
 TEST(StepPath, AnImpactActsWhereItLands) {
-  Scene scene;
+  PathScene scene;
   scene.body.applyCentralForce(btVector3(0, 0, btScalar(-9.81 * kMass_kg)));
   scene.start[0].p = Vec3(0, 0, kRadius_m + 1e-3);
   scene.end[0] = Pose(rotationFromVector({0, 0.02, 0}), Vec3(0.1e-3, 0, kRadius_m));
@@ -90,14 +90,14 @@ TEST(StepPath, AnImpactActsWhereItLands) {
 /// A corner lands within the step after another corner carried the weight. The effective lever lies between
 /// the levers of both corners.
 TEST(StepPath, ACornerThatLandsSlowlyDoesNoWork) {
-  Scene scene;
+  PathScene scene;
   scene.body.applyCentralForce(btVector3(0, 0, btScalar(-9.81 * kMass_kg)));
   const double angle_rad = 0.01, side_m = 1e-3;
   scene.start[0].p = Vec3(0, 0, kRadius_m);
   scene.end[0] = Pose(rotationFromVector({0, angle_rad, 0}), Vec3(angle_rad * kRadius_m, 0, kRadius_m));
   const Vec3 corner(angle_rad * kRadius_m + 0.5 * side_m, 0, 0);
   const Vec3 before = scene.start[0] * (scene.end[0].inverse() * corner);
-  ASSERT_LT(before.z(), 9.81 * kStep_s * kStep_s);
+  ASSERT_LT(before.z(), 9.81 * kPathStep_s * kPathStep_s);
   Candidate landed = at(corner, 0);
   landed.crossed = 1;  // a corner on a facet of the plate
   landed.plane_of = 1;
@@ -110,7 +110,7 @@ TEST(StepPath, ACornerThatLandsSlowlyDoesNoWork) {
 
 /// Both bodies' levers pass through one point, for any rotation of the bodies.
 TEST(StepPath, TheActingPointGoesWithTheBodyThatTurnsMoreEasily) {
-  Scene scene;
+  PathScene scene;
   scene.start[0].p = Vec3(0, 0, kRadius_m);
   scene.end[0].p = Vec3(0.2e-3, 0, kRadius_m);
   scene.end[1].p = Vec3(5e-3, 0, 0);  // a body that contact does not move

@@ -19,10 +19,6 @@ const Built& tube() {
   static const Built built = test::build(makeTube(0.012, 0.006, 0.01, 24), 7850, 0.5e-3, 1e-3);
   return built;
 }
-const Built& plate() {
-  static const Built built = test::plate();
-  return built;
-}
 
 std::vector<char> save(World& world) {
   btDefaultSerializer serializer;
@@ -33,7 +29,7 @@ std::vector<char> save(World& world) {
 
 /// A fixed plate, a tube that falls on it, and one of Bullet's boxes.
 void fill(World& world, btBoxShape& box) {
-  world.add(plate(), Pose(), true);
+  world.add(test::onePlate(), Pose(), true);
   world.add(tube(), Pose(rotationFromVector(Vec3(0.1, 0.05, 0.2)), Vec3(0, 0, 0.012)));
   world.addShape(box, 0.01, Vec3(1e-7, 1e-7, 1e-7), Pose::translation(Vec3(0.02, 0, 0.02)));
 }

@@ -21,12 +21,6 @@ using test::World;
 
 constexpr double kRounding_m = sizeof(btScalar) == 8 ? 1e-12 : 1e-7;
 
-ShapeModels boxMesh() {
-  ShapeModels models;
-  models.mesh = std::make_shared<const Mesh>(makeBox(Vec3(0.02, 0.04, 0.06)));
-  return models;
-}
-
 TEST(BodyFrame, OfAnOffsetBoxHasItsAnalyticInertia) {
   const Vec3 size(0.02, 0.03, 0.04);
   const Pose X_PM(rotationFromVector(Vec3(0.3, -0.2, 0.5)), Vec3(0.1, 0.2, 0.3));
@@ -49,7 +43,7 @@ TEST(BodyFrame, RefusesAnInsideOutMesh) {
 }
 
 TEST(Shape, HasAConcaveTypeThatBulletDoesNotUse) {
-  const Shape shape(boxMesh());
+  const Shape shape(test::boxMesh());
   EXPECT_EQ(shape.getShapeType(), FAST_CONCAVE_MESH_PROXYTYPE);
   EXPECT_TRUE(shape.isConcave());
   EXPECT_EQ(shape.getMargin(), 0);
@@ -92,7 +86,7 @@ std::string refusalOf(const Call& call) {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Shape, RefusesAMargin) {
-  Shape shape(boxMesh());
+  Shape shape(test::boxMesh());
   testing::internal::CaptureStderr();
   shape.setMargin(toBt(0.01));
   EXPECT_NE(testing::internal::GetCapturedStderr().find("has no effect"), std::string::npos);
@@ -103,15 +97,15 @@ TEST(Shape, RefusesAMargin) {
 
 TEST(Shape, RefusesEmptyModelsAndPosesThatAreNotFinite) {
   EXPECT_NE(refusalOf([] { Shape shape(ShapeModels{}); }).find("no models"), std::string::npos);
-  EXPECT_NE(refusalOf([] { Shape shape(boxMesh(), Pose::translation(Vec3(0, kNan, 0))); }).find("X_SM"),
+  EXPECT_NE(refusalOf([] { Shape shape(test::boxMesh(), Pose::translation(Vec3(0, kNan, 0))); }).find("X_SM"),
             std::string::npos);
-  Shape shape(boxMesh());
+  Shape shape(test::boxMesh());
   EXPECT_NE(refusalOf([&] { shape.setModels(ShapeModels{}); }).find("no models"), std::string::npos);
   EXPECT_TRUE(shape.models().mesh) << "it is as it was";
 }
 
 TEST(Shape, RefusesAMassThatIsNegativeOrNotFinite) {
-  const Shape shape(boxMesh());
+  const Shape shape(test::boxMesh());
   btVector3 inertia(1, 1, 1);
   for (const double mass : {-1.0, kNan, std::numeric_limits<double>::infinity()})
     EXPECT_NE(refusalOf([&] { shape.calculateLocalInertia(toBt(mass), inertia); }).find("mass"),
@@ -189,15 +183,15 @@ TEST(Shape, ScaledInContactItRestsAtItsNewHeight) {
 }
 
 TEST(Shape, ReplacedModelsAreScaledAsTheShapeIs) {
-  Shape shape(boxMesh());
+  Shape shape(test::boxMesh());
   shape.setLocalScaling(btVector3(3, 3, 3));
-  shape.setModels(boxMesh());
+  shape.setModels(test::boxMesh());
   EXPECT_LE((shape.bounds().size() - 3 * Vec3(0.02, 0.04, 0.06)).norm(), 1e-12);
 }
 
 TEST(Shape, WithoutMapOrShellReportsThatItHasNoContact) {
   World world;
-  Shape only_mesh(boxMesh());
+  Shape only_mesh(test::boxMesh());
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
   world.addShape(plane, 0, Vec3::Zero(), Pose());
   world.addShape(only_mesh, 1, Vec3::Ones(), Pose());

@@ -15,12 +15,6 @@ namespace {
 using test::Built;
 using test::World;
 
-ShapeModels boxMesh() {
-  ShapeModels models;
-  models.mesh = std::make_shared<const Mesh>(makeBox(Vec3(0.02, 0.04, 0.06)));
-  return models;
-}
-
 TEST(ShapeInWorld, ARayHitsItWhereItIs) {
   World world;
   ShapeModels models;
@@ -72,7 +66,7 @@ TEST(ShapeInWorld, IsDrawnByItsTriangles) {
   } lines;
   World world;
   world.world->setDebugDrawer(&lines);
-  const Shape shape(boxMesh());
+  const Shape shape(test::boxMesh());
   world.world->debugDrawObject(toBt(Pose::translation(Vec3(0.1, 0, 0))), &shape, btVector3(1, 1, 1));
   EXPECT_GE(lines.count, 12 * 3);
   // Includes the axes that Bullet draws at the origin, 0.1 m long.

@@ -11,8 +11,8 @@ namespace {
 
 using namespace test_island;
 
-constexpr double kNear_m_s = 1e-10;
-constexpr int kMany = 200;
+constexpr double kPenaltyNear_m_s = 1e-10;
+constexpr int kManyNewtonSteps = 200;
 
 PenaltyPoint pointAt(const Vec3& p_W, const Vec3& n_W, double gap_m, double k_N_per_m) {
   PenaltyPoint point;
@@ -29,7 +29,7 @@ void solve(SmallIsland& made, std::vector<PenaltyPair>& pairs) {
   newton.clear(kDt_s);
   for (PenaltyPair& pair : pairs) newton.add(pair, 0, false);
   for (int round = 0; round < 100; ++round) {
-    ASSERT_TRUE(newton.solve(kNear_m_s, kMany, PenaltyNewton::End::Balanced).is_converged);
+    ASSERT_TRUE(newton.solve(kPenaltyNear_m_s, kManyNewtonSteps, PenaltyNewton::End::Balanced).is_converged);
     if (newton.updateLimits() < 1e-12) break;
   }
   newton.finish();

@@ -16,7 +16,7 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kDt_s = 1e-3;
+constexpr double kPlantStep_s = 1e-3;
 
 DualArmPlantSettings frictionless() {
   DualArmPlantSettings s;
@@ -64,7 +64,7 @@ TEST(DualArmPlant, WithFixedMotorsTheHandleYieldsByTheStructureAlone) {
         hand.F.f = 5 * Vec3::Unit(axis);
         for (int tick = 0; tick < 400; ++tick) {
           plant.drive(carry);
-          plant.step(kDt_s, hand);
+          plant.step(kPlantStep_s, hand);
         }
         Vec6 F;
         F << Vec3::Zero(), hand.F.f;
@@ -141,7 +141,7 @@ TEST(DualArmPlant, CommandActsAfterTheStatedTicks) {
     for (int tick = 0; tick < 12; ++tick) {
       plant.drive(wanted);
       EXPECT_EQ(plant.efforts(), tick < delay ? before : wanted) << delay << " " << tick;
-      plant.step(kDt_s, {});
+      plant.step(kPlantStep_s, {});
     }
   }
 }
@@ -156,12 +156,12 @@ TEST(DualArmPlant, AmplifiersSwitchOffWithoutCommandsAndLimitEfforts) {
   JointVector expected = motorLimits(p, 1);
   expected[3] = 0;
   EXPECT_EQ(plant.efforts(), expected);
-  const int ticks = static_cast<int>(p.watchdog_s / kDt_s);
+  const int ticks = static_cast<int>(p.watchdog_s / kPlantStep_s);
   HandForce hand;
   hand.b_Ns_per_m = 1e3 * Mat3::Identity();
-  for (int i = 0; i < ticks; ++i) plant.step(kDt_s, hand);
+  for (int i = 0; i < ticks; ++i) plant.step(kPlantStep_s, hand);
   EXPECT_EQ(plant.efforts(), expected);
-  for (int i = 0; i < 3; ++i) plant.step(kDt_s, hand);
+  for (int i = 0; i < 3; ++i) plant.step(kPlantStep_s, hand);
   EXPECT_EQ(plant.efforts(), JointVector(JointVector::Zero()));
 }
 
@@ -183,7 +183,7 @@ TEST(DualArmPlant, StopsHoldEachJointAndReturnNoEnergy) {
       hand.b_Ns_per_m = 30 * Mat3::Identity();
       hand.b_Nms_per_rad = 0.2 * Mat3::Identity();
       plant.drive(carryOf(p, plant.pose()));
-      plant.step(kDt_s, hand);
+      plant.step(kPlantStep_s, hand);
       HandleMotion motion;
       ASSERT_EQ(handleMotion(p, plant.pose(), motion), Status::Ok) << axis;
       for (int i = 0; i < 8; ++i) {
@@ -202,7 +202,7 @@ TEST(DualArmPlant, StopsHoldEachJointAndReturnNoEnergy) {
         const double allowed = is_slide ? 5e-3 : i < 6 ? 0.05 : 0.15;
         EXPECT_LT(beyond, allowed) << "axis " << axis << " joint " << i;
       }
-      travelled_J += kDt_s * power(plant.lastHandWrench(), plant.twist());
+      travelled_J += kPlantStep_s * power(plant.lastHandWrench(), plant.twist());
       gained_J = std::max(gained_J, plant.kinetic_J() + plant.structure_J() - travelled_J);
     }
     // About x the handle turns end for end: no joint stop limits this rotation, since the arms would collide
@@ -291,8 +291,8 @@ TEST(DualArmPlant, MotorsNeverHeatBeyondTheirContinuousRating) {
   double hottest = 0, peak_s = 0;
   for (int i = 0; i < 20000; ++i) {
     const JointVector efforts = heat.limits();  // the efforts are always at the present limit
-    if (efforts[0] > 0.99 * p.plate_peak_Nm) peak_s = i * kDt_s;
-    heat.add(efforts, kDt_s);
+    if (efforts[0] > 0.99 * p.plate_peak_Nm) peak_s = i * kPlantStep_s;
+    heat.add(efforts, kPlantStep_s);
     hottest = std::max(hottest, heat.heat().maxCoeff());
   }
   EXPECT_LT(hottest, 1 + 1e-9);
@@ -308,7 +308,7 @@ TEST(DualArmPlant, StepsWithoutAllocating) {
   for (int i = 0; i < 100; ++i) {
     plant.read();
     plant.drive(jointVector(1, 1, 0.1));
-    plant.step(kDt_s, pushing(Vec3(1, 2, 3)));
+    plant.step(kPlantStep_s, pushing(Vec3(1, 2, 3)));
   }
 }
 

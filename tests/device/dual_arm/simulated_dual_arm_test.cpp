@@ -25,7 +25,7 @@ HandForce springHand(const Pose& X_eq, double k_N_per_m, double mass_kg) {
   return hand;
 }
 
-SimulatedDualArmSettings frictionless() {
+SimulatedDualArmSettings frictionlessArms() {
   SimulatedDualArmSettings s;
   s.arms.plate_damping_Nms = s.arms.link_damping_Ns_per_m = s.arms.rotor_damping_Nms = 0;
   s.arms.plate_coulomb_Nm = s.arms.link_coulomb_N = s.arms.rotor_coulomb_Nm = 0;
@@ -80,7 +80,7 @@ TEST(SimulatedDualArm, DeflectionUnderTheHandlesWeightIsSubtracted) {
 
 TEST(SimulatedDualArm, MotorsCarryTheHandleWithoutAHand) {
   for (const bool is_ideal : {true, false}) {
-    SimulatedDualArmSettings settings = frictionless();
+    SimulatedDualArmSettings settings = frictionlessArms();
     settings.has_quantised_encoders = false;
     if (is_ideal) settings.is_rigid = true;
     if (is_ideal) settings.arms.delay_ticks = 0;
@@ -117,7 +117,7 @@ TEST(SimulatedDualArm, HandFollowsAMinimumJerkPathWithSmallLag) {
 
 TEST(SimulatedDualArm, EnergyNeverGrowsInFreeSwing) {
   for (const double dt_s : {1e-3, 0.25e-3}) {
-    SimulatedDualArmSettings settings = frictionless();
+    SimulatedDualArmSettings settings = frictionlessArms();
     settings.has_quantised_encoders = false;
     SimulatedDualArm arm(settings);
     HandForce hand =

@@ -10,6 +10,7 @@
 #include "judge/motion_judge.h"
 #include "support/fit.h"
 #include "support/random_draw.h"
+#include "support/units.h"
 #include "vps_scenes/run/simulate.h"
 
 namespace vps::families {
@@ -19,7 +20,7 @@ using scenes::ExactBody;
 using scenes::MotionJudge;
 using test::Random;
 
-constexpr double kMm = 1e-3, kUm = 1e-6, kStep_s = 1e-3;
+constexpr double kStep_s = 1e-3;
 
 std::shared_ptr<const ExactBody> exact(const Mesh& mesh) {
   return std::make_shared<const ExactBody>(std::make_shared<const Solid>(mesh));

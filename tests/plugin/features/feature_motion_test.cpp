@@ -39,15 +39,10 @@ Mesh tetrahedron(std::mt19937& random) {
   }
 }
 
-Vec3 direction(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return test::drawnVector(normal, random).normalized();
-}
-
 Pose pose(std::mt19937& random, double away_m) {
   std::uniform_real_distribution<double> angle(0, std::numbers::pi);
-  const Vec3 axis = direction(random);
-  return {rotationFromVector(angle(random) * axis), away_m * direction(random)};
+  const Vec3 axis = test::drawnDirection(random);
+  return {rotationFromVector(angle(random) * axis), away_m * test::drawnDirection(random)};
 }
 
 std::vector<FeatureContact> check(const Body& a, const Body& b, const Pose& start, const Pose& end) {
@@ -337,7 +332,7 @@ TEST(FeatureMotion, NoOverlapIsMissed) {
     const Pose start = pose(random, 12e-3 * unit(random));
     if (deepestOverlap(a.exact, Pose(), b.exact, start).depth_m > 0) continue;
     const double travel_m = std::pow(10, -6 + 4 * unit(random));
-    const Vec3 axis = direction(random);
+    const Vec3 axis = test::drawnDirection(random);
     const Pose end(rotationFromVector(0.2 * unit(random) * axis) * start.R,
                    start.p - travel_m * start.p.normalized());
     const bool overlaps_now = deepestOverlap(a.exact, Pose(), b.exact, end).depth_m > 0;
@@ -361,13 +356,13 @@ TEST(FeatureMotion, NoCornerThatPassesAnEdgeIsMissed) {
   int overlaps = 0, missed = 0;
   for (int i = 0; i < 20000; ++i) {
     const Body b(tetrahedron(random));
-    const Mat3 R = rotationFromVector(draw(0, std::numbers::pi) * direction(random));
+    const Mat3 R = rotationFromVector(draw(0, std::numbers::pi) * test::drawnDirection(random));
     const Vec3 corner = R * b.exact.mesh().vertices[0];
     // Places beside the box's edge along x, within the rest gap of both faces' planes, on either side of
     // them.
     const Vec3 beside(draw(-2e-3, 2e-3), half.y() + draw(-90e-9, 90e-9), half.z() + draw(-90e-9, 90e-9));
     const Vec3 way(draw(-1, 1), draw(-1, 1), draw(-1, 1));
-    const Vec3 turn = draw(0, 0.05) * direction(random);
+    const Vec3 turn = draw(0, 0.05) * test::drawnDirection(random);
     const Mat3 R_start = rotationFromVector(-turn) * R, R_end = rotationFromVector(turn) * R;
     const Vec3 own = R.transpose() * corner;
     const Pose start(R_start, beside - R_start * own - draw(5e-6, 50e-6) * way);
@@ -453,7 +448,7 @@ TEST(FeatureMotion, NoRimThatSlidesOverTheCornersOfAnotherIsMissed) {
     };
     const Place on_a = rim(a), on_b = rim(b);
     const Mat3 facing = Quat::FromTwoVectors(on_b.outward, -on_a.outward).toRotationMatrix();
-    const Mat3 R = rotationFromVector(draw(0, 0.6) * direction(random)) *
+    const Mat3 R = rotationFromVector(draw(0, 0.6) * test::drawnDirection(random)) *
                    rotationFromVector(draw(0, 2 * std::numbers::pi) * on_a.outward) * facing;
     // The lines of both edges keep the rest gap, wherever the edges cross.
     const auto poseAt = [&](const Mat3& turned, const Vec3& slide) {
@@ -463,8 +458,8 @@ TEST(FeatureMotion, NoRimThatSlidesOverTheCornersOfAnotherIsMissed) {
     };
     const Pose start = poseAt(R, Vec3::Zero());
     if (deepestOverlap(a.exact, Pose(), b.exact, start).depth_m > 0) continue;
-    const Mat3 R_end = rotationFromVector(draw(0, 0.03) * direction(random)) * R;
-    const Pose end = poseAt(R_end, draw(0, 1e-3) * direction(random));
+    const Mat3 R_end = rotationFromVector(draw(0, 0.03) * test::drawnDirection(random)) * R;
+    const Pose end = poseAt(R_end, draw(0, 1e-3) * test::drawnDirection(random));
     const double end_m = deepestOverlap(a.exact, Pose(), b.exact, end).depth_m;
     if (!(end_m > 0.3e-6 && end_m < 30e-6)) continue;
     ++overlaps;

@@ -11,11 +11,6 @@
 namespace vps {
 namespace {
 
-Vec3 direction(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return test::drawnVector(normal, random).normalized();
-}
-
 double distanceFromSegment(const Vec3& p, const Vec3& from, const Vec3& to) {
   const Vec3 way = to - from;
   const double square = way.squaredNorm();
@@ -31,14 +26,15 @@ TEST(MotionTube, PointsOfMotionsThatItHoldsStayWithinItsMargin) {
   int held = 0;
   double fullest = 0;
   for (int trial = 0; trial < 3000; ++trial) {
-    const Ball ball0{size(random) * direction(random), size(random)},
-        ball1{size(random) * direction(random), size(random)};
+    const Ball ball0{size(random) * test::drawnDirection(random), size(random)},
+        ball1{size(random) * test::drawnDirection(random), size(random)};
     const double radius_m = std::min(ball0.radius_m, ball1.radius_m);
-    const Pose start(rotationFromVector(std::numbers::pi * unit(random) * direction(random)),
-                     size(random) * direction(random));
+    const Pose start(rotationFromVector(std::numbers::pi * unit(random) * test::drawnDirection(random)),
+                     size(random) * test::drawnDirection(random));
     const double step_m = std::pow(10.0, -6 + 3 * unit(random));
-    const Pose step(rotationFromVector(std::min(0.1, step_m / radius_m) * unit(random) * direction(random)),
-                    step_m * direction(random));
+    const Pose step(
+        rotationFromVector(std::min(0.1, step_m / radius_m) * unit(random) * test::drawnDirection(random)),
+        step_m * test::drawnDirection(random));
     const Pose end = start * step;
     const MotionTube tube(ball0, ball1, start, end);
     ASSERT_TRUE(tube.holds(start));
@@ -49,8 +45,8 @@ TEST(MotionTube, PointsOfMotionsThatItHoldsStayWithinItsMargin) {
     Pose X[2];
     for (Pose& pose : X) {
       const Pose on = way.at(unit(random)).inverse();
-      pose = on * Pose(rotationFromVector(off_m / radius_m * unit(random) * direction(random)),
-                       off_m * unit(random) * direction(random));
+      pose = on * Pose(rotationFromVector(off_m / radius_m * unit(random) * test::drawnDirection(random)),
+                       off_m * unit(random) * test::drawnDirection(random));
     }
     if (!tube.holds(X[0]) || !tube.holds(X[1])) continue;
     ++held;
@@ -59,7 +55,7 @@ TEST(MotionTube, PointsOfMotionsThatItHoldsStayWithinItsMargin) {
     const MotionBetweenPoses between(ball0, ball1, X[0], X[1]);
     for (int k = 0; k < 20; ++k) {
       const Pose at_10 = between.at(unit(random));
-      const Vec3 own = smaller.center + smaller.radius_m * direction(random);
+      const Vec3 own = smaller.center + smaller.radius_m * test::drawnDirection(random);
       // The point in its own part's frame, and its place in the other part's frame.
       const Vec3 p0 = is_first ? own : Vec3(at_10.inverse() * own), p1 = is_first ? Vec3(at_10 * own) : own;
       const double of_0_m = distanceFromSegment(p1, tube.from().inverse() * p0, tube.to().inverse() * p0);

@@ -15,7 +15,7 @@ namespace vps {
 namespace {
 
 constexpr double kTurn_rad = 0.3;
-constexpr double kLeast_m = 1e-6;
+constexpr double kLeastGap_m = 1e-6;
 
 using Body = test::FeatureBody;
 
@@ -36,7 +36,7 @@ Pose turnedAbout(const Pose& at, double angle_rad) {
 
 // The answer after the number of calls that a search may wait for.
 bool staysApart(SpinClearance& spin, const Body& a, const Body& b, const Pose& start, const Pose& end,
-                double least_m = kLeast_m) {
+                double least_m = kLeastGap_m) {
   bool is_apart = false;
   for (int i = 0; i < 8 && !is_apart; ++i)
     is_apart = spin.staysApart(a.features, b.features, start, end, least_m);
@@ -108,7 +108,7 @@ TEST(SpinClearance, NeverCallsApartWhatOverlaps) {
         staysApart(spin, outer, inner, Pose(), turnedAbout(Pose(), kTurn_rad));
         continue;
       }
-      const bool is_apart = spin.staysApart(outer.features, inner.features, start, end, kLeast_m);
+      const bool is_apart = spin.staysApart(outer.features, inner.features, start, end, kLeastGap_m);
       double depth_m = 0;
       for (const double share : {0.0, 0.5, 1.0}) {
         const Mat3 R = rotationFromVector(share * rotationVector(end.R * start.R.transpose())) * start.R;
@@ -135,13 +135,15 @@ TEST(SpinClearance, SweepsEdgesOfFacetsWithoutArea) {
   SpinClearance without, with;
   const Pose end = turnedAbout(Pose(), kTurn_rad);
   bool is_apart = false;
-  for (int i = 0; i < 8; ++i) is_apart = without.staysApart(outer.features, features, Pose(), end, kLeast_m);
+  for (int i = 0; i < 8; ++i)
+    is_apart = without.staysApart(outer.features, features, Pose(), end, kLeastGap_m);
   EXPECT_TRUE(is_apart);
   mesh.triangles.push_back({first, first + 1, first + 2});
   FeatureSet with_edge;
   with_edge.append(mesh, Pose(), false);
   with_edge.build();
-  for (int i = 0; i < 8; ++i) EXPECT_FALSE(with.staysApart(outer.features, with_edge, Pose(), end, kLeast_m));
+  for (int i = 0; i < 8; ++i)
+    EXPECT_FALSE(with.staysApart(outer.features, with_edge, Pose(), end, kLeastGap_m));
 }
 
 // A single step in which the part is pushed aside does not cause a search for another axis that is of no use.
@@ -153,8 +155,8 @@ TEST(SpinClearance, KeepsTheAxisThatItKnows) {
   const Pose aside(Mat3::Identity(), Vec3(95e-6, 0, 0));
   for (int i = 0; i < 100; ++i)
     EXPECT_FALSE(
-        spin.staysApart(outer.features, inner.features, aside, turnedAbout(aside, kTurn_rad), kLeast_m));
-  EXPECT_TRUE(spin.staysApart(outer.features, inner.features, Pose(), end, kLeast_m));
+        spin.staysApart(outer.features, inner.features, aside, turnedAbout(aside, kTurn_rad), kLeastGap_m));
+  EXPECT_TRUE(spin.staysApart(outer.features, inner.features, Pose(), end, kLeastGap_m));
 }
 
 TEST(SpinClearance, SaysNothingOfPartsThatDoNotTurn) {

@@ -20,11 +20,6 @@
 namespace vps {
 namespace {
 
-Vec3 direction(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return test::drawnVector(normal, random).normalized();
-}
-
 bool isAllowed(const std::vector<Vec3>& rays, const Vec3& n, double slope) {
   return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) >= -slope; });
 }
@@ -35,16 +30,17 @@ TEST(TouchCone, HoldsEveryDirectionThatAllRaysAllow) {
   std::uniform_real_distribution<double> wide(0.1, 3.0);
   int empty = 0, narrow = 0;
   for (int trial = 0; trial < 400; ++trial) {
-    const Vec3 axis = direction(random);
+    const Vec3 axis = test::drawnDirection(random);
     const double spread = wide(random);
     std::vector<Vec3> rays;
-    for (int i = 0; i < 3 + trial % 6; ++i) rays.push_back((axis + spread * direction(random)).normalized());
+    for (int i = 0; i < 3 + trial % 6; ++i)
+      rays.push_back((axis + spread * test::drawnDirection(random)).normalized());
     if (trial % 3 == 0) rays.push_back(-rays[0]);  // a straight edge: two opposite rays
     const auto cone = touchCone(rays, kSinTouch);
     if (!cone) ++empty;
     if (cone && cone->angle_rad < 1.5) ++narrow;
     for (int k = 0; k < 3000; ++k) {
-      const Vec3 n = direction(random);
+      const Vec3 n = test::drawnDirection(random);
       if (!isAllowed(rays, n, kSinTouch)) continue;
       ASSERT_TRUE(cone) << trial;
       ASSERT_LE(std::acos(std::clamp(n.dot(cone->axis), -1.0, 1.0)), cone->angle_rad + 1e-12) << trial;
@@ -128,7 +124,7 @@ TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
     EXPECT_TRUE(
         holds(searchAll(a, b, X, margin_m, Near::ToItsBoxAndPlane, Mat3::Identity(), slack_rad), pairs));
     for (int k = 0; k < 3; ++k) {
-      const Mat3 turn = rotationFromVector(slack_rad * direction(random));
+      const Mat3 turn = rotationFromVector(slack_rad * test::drawnDirection(random));
       EXPECT_TRUE(holds(pairs, searchAll(a, b, X, margin_m * (1 - 1e-9), Near::ToTheFacet, turn, 0)));
     }
     count += pairs.size();
@@ -138,7 +134,7 @@ TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
   for (const FeatureSet* a : all)
     for (const FeatureSet* b : all)
       for (int trial = 0; trial < 3; ++trial) {
-        const Vec3 axis = direction(random), way = direction(random);
+        const Vec3 axis = test::drawnDirection(random), way = test::drawnDirection(random);
         const Pose X(rotationFromVector(3 * axis), away(random) * way);
         const double margin_m = margin(random), slack_rad = slack(random);
         compare(*a, *b, X, margin_m, slack_rad);
@@ -163,8 +159,9 @@ TEST(TouchSearch, FindsWhatComesNearOnAWay) {
   for (const FeatureSet* a : all)
     for (const FeatureSet* b : all)
       for (int trial = 0; trial < 4; ++trial) {
-        const Pose from(rotationFromVector(3 * direction(random)), away(random) * direction(random));
-        const Pose to(from.R, from.p + way(random) * direction(random));
+        const Pose from(rotationFromVector(3 * test::drawnDirection(random)),
+                        away(random) * test::drawnDirection(random));
+        const Pose to(from.R, from.p + way(random) * test::drawnDirection(random));
         const double margin_m = margin(random);
         std::vector<TouchPair> found;
         findTouchPairs(*a, *b, {from, to}, margin_m, 0, found);

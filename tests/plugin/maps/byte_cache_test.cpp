@@ -15,14 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string bytesOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-void write(const fs::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary) << bytes;
-}
-
 class ByteCacheTest : public testing::Test {
  protected:
   TemporaryFolder folder_;
@@ -44,17 +36,17 @@ TEST_F(ByteCacheTest, FindsWhatWasKeptByWhatItWasMadeFrom) {
 TEST_F(ByteCacheTest, AFileThatIsCutOrChangedAnywhereIsNotUsedAndReplaced) {
   cache_.keep("one", "some bytes");
   const fs::path file = cache_.fileOf("one");
-  const std::string whole = bytesOf(file);
+  const std::string whole = test::bytesOf(file);
   for (std::size_t i = 0; i < whole.size(); ++i) {
-    write(file, whole.substr(0, i));
+    test::write(file, whole.substr(0, i));
     EXPECT_FALSE(cache_.find("one")) << "cut at " << i;
     std::string changed = whole;
     changed[i] ^= 1;
-    write(file, changed);
+    test::write(file, changed);
     EXPECT_FALSE(cache_.find("one")) << "changed at " << i;
   }
   EXPECT_EQ(warnings_.size(), 2 * whole.size());
-  write(file, whole + "x");
+  test::write(file, whole + "x");
   EXPECT_FALSE(cache_.find("one"));
   cache_.keep("one", "some bytes");
   EXPECT_EQ(cache_.find("one"), "some bytes");

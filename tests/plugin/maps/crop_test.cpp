@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/units.h"
 #include "vps/box.h"
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
@@ -13,8 +14,6 @@
 
 namespace vps {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 Box boxOf(const Vec3& min, const Vec3& max) {
   Box box;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/model_estimate.h"
+#include "support/units.h"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +13,6 @@
 
 namespace vps {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 struct Case {
   const char* name;

@@ -22,18 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr VoxMapSettings kSettings = {0.5e-3, 4};
+constexpr VoxMapSettings kCachedSettings = {0.5e-3, 4};
 
 Mesh part() {
   return transformed(makeTube(0.01, 0.006, 0.012, 48), RandomPoints(2).pose(0.01));
-}
-
-std::string bytesOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-void write(const fs::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary) << bytes;
 }
 
 /// Compares everything that can be read from two maps, to the bit.
@@ -59,12 +51,12 @@ void expectSame(const VoxMap& a, const VoxMap& b) {
 class VoxMapCacheTest : public testing::Test {
  protected:
   VoxMap build(const Mesh& mesh, MeshReport* report = nullptr) {
-    return cache_.build(mesh, kSettings, "hub", {}, report);
+    return cache_.build(mesh, kCachedSettings, "hub", {}, report);
   }
   /// The map that is built if `bytes` replace the content of part()'s file.
   VoxMap rebuilt(const std::string& bytes) {
     warnings_.clear();
-    write(cache_.fileOf(part(), kSettings), bytes);
+    test::write(cache_.fileOf(part(), kCachedSettings), bytes);
     return build(part());
   }
 
@@ -74,11 +66,12 @@ class VoxMapCacheTest : public testing::Test {
 };
 
 TEST_F(VoxMapCacheTest, TheSecondMapIsReadFromTheFileWithTheSameBits) {
-  const VoxMap direct = buildVoxMap(part(), kSettings);
+  const VoxMap direct = buildVoxMap(part(), kCachedSettings);
   expectSame(build(part()), direct);
-  ASSERT_TRUE(fs::exists(cache_.fileOf(part(), kSettings)));
+  ASSERT_TRUE(fs::exists(cache_.fileOf(part(), kCachedSettings)));
   int calls = 0;
-  const VoxMap kept = cache_.build(part(), kSettings, "hub", [&](std::string_view, double) { ++calls; });
+  const VoxMap kept =
+      cache_.build(part(), kCachedSettings, "hub", [&](std::string_view, double) { ++calls; });
   EXPECT_EQ(calls, 0);
   expectSame(kept, direct);
   EXPECT_TRUE(warnings_.empty());
@@ -100,16 +93,16 @@ TEST_F(VoxMapCacheTest, ADifferenceInTheLastBitGivesAnotherFile) {
   other.vertices[5].x() = std::nextafter(other.vertices[5].x(), 1.0);
   Mesh turned = part();
   std::rotate(turned.triangles[0].begin(), turned.triangles[0].begin() + 1, turned.triangles[0].end());
-  std::set<fs::path> files = {cache_.fileOf(part(), kSettings), cache_.fileOf(other, kSettings),
-                              cache_.fileOf(turned, kSettings), cache_.fileOf(part(), {0.5e-3, 3}),
+  std::set<fs::path> files = {cache_.fileOf(part(), kCachedSettings), cache_.fileOf(other, kCachedSettings),
+                              cache_.fileOf(turned, kCachedSettings), cache_.fileOf(part(), {0.5e-3, 3}),
                               cache_.fileOf(part(), {0.4e-3, 4})};
   EXPECT_EQ(files.size(), 5u);
 }
 
 TEST_F(VoxMapCacheTest, EveryDamagedFileIsBuiltAgainWithAWarningAndReplaced) {
   const VoxMap direct = build(part());
-  const fs::path file = cache_.fileOf(part(), kSettings);
-  const std::string good = bytesOf(file);
+  const fs::path file = cache_.fileOf(part(), kCachedSettings);
+  const std::string good = test::bytesOf(file);
   std::vector<std::string> damaged = {"", "vpscache", std::string(5000, 'x'), good + "x"};
   for (const std::size_t length : {good.size() / 2, good.size() - 1, std::size_t{144}, std::size_t{150}})
     damaged.push_back(good.substr(0, length));
@@ -123,24 +116,24 @@ TEST_F(VoxMapCacheTest, EveryDamagedFileIsBuiltAgainWithAWarningAndReplaced) {
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_NE(warnings_[0].find("built again"), std::string::npos) << warnings_[0];
     ASSERT_EQ(map.distance({0.002, 0, 0}), direct.distance({0.002, 0, 0}));
-    ASSERT_EQ(bytesOf(file), good);
+    ASSERT_EQ(test::bytesOf(file), good);
   }
 }
 
 TEST_F(VoxMapCacheTest, AFileOfAnotherPartUnderItsNameIsNotTrusted) {
   build(makeBox({0.01, 0.01, 0.01}));
-  const VoxMap map = rebuilt(bytesOf(cache_.fileOf(makeBox({0.01, 0.01, 0.01}), kSettings)));
+  const VoxMap map = rebuilt(test::bytesOf(cache_.fileOf(makeBox({0.01, 0.01, 0.01}), kCachedSettings)));
   ASSERT_EQ(warnings_.size(), 1u);
   EXPECT_NE(warnings_[0].find("made from other data"), std::string::npos) << warnings_[0];
-  expectSame(map, buildVoxMap(part(), kSettings));
+  expectSame(map, buildVoxMap(part(), kCachedSettings));
 }
 
 TEST_F(VoxMapCacheTest, AFolderThatCannotBeCreatedGivesAWarningAndTheMap) {
-  write(folder_.path() / "maps", "a file where the folder should be");
-  expectSame(build(part()), buildVoxMap(part(), kSettings));
+  test::write(folder_.path() / "maps", "a file where the folder should be");
+  expectSame(build(part()), buildVoxMap(part(), kCachedSettings));
   ASSERT_EQ(warnings_.size(), 1u);
   EXPECT_NE(warnings_[0].find("could not be kept"), std::string::npos) << warnings_[0];
-  EXPECT_EQ(bytesOf(folder_.path() / "maps"), "a file where the folder should be");
+  EXPECT_EQ(test::bytesOf(folder_.path() / "maps"), "a file where the folder should be");
 }
 
 TEST_F(VoxMapCacheTest, InputThatBuildingRefusesIsRefusedAndNotStored) {
@@ -154,7 +147,7 @@ TEST_F(VoxMapCacheTest, ConcurrentWritersLeaveOneWholeFile) {
   for (VoxMap& map : maps)
     threads.emplace_back([&] {
       const VoxMapCache own(folder_.path() / "maps");
-      for (int n = 0; n < 5; ++n) map = own.build(part(), kSettings);
+      for (int n = 0; n < 5; ++n) map = own.build(part(), kCachedSettings);
     });
   for (std::thread& t : threads) t.join();
   for (const VoxMap& map : maps) expectSame(map, maps[0]);
@@ -201,7 +194,7 @@ TEST_F(VoxMapCacheTest, TheSecondShellIsReadFromTheFileWithTheSameBits) {
 TEST_F(VoxMapCacheTest, EveryDamagedShellIsBuiltAgainWithAWarningAndReplaced) {
   const PointShell direct = shellOf(cache_, part());
   const fs::path file = cache_.shellFileOf(part(), kPoints);
-  const std::string good = bytesOf(file);
+  const std::string good = test::bytesOf(file);
   std::vector<std::string> damaged = {"", std::string(5000, 'x'), good + "x",
                                       good.substr(0, good.size() - 60)};
   for (std::size_t i = 0; i < good.size(); i += i < 60 ? 1 : good.size() / 40) {
@@ -210,11 +203,11 @@ TEST_F(VoxMapCacheTest, EveryDamagedShellIsBuiltAgainWithAWarningAndReplaced) {
   }
   for (const std::string& bytes : damaged) {
     warnings_.clear();
-    write(file, bytes);
+    test::write(file, bytes);
     expectSame(shellOf(cache_, part()), direct);
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_NE(warnings_[0].find("built again"), std::string::npos) << warnings_[0];
-    ASSERT_EQ(bytesOf(file), good);
+    ASSERT_EQ(test::bytesOf(file), good);
   }
 }
 
@@ -224,18 +217,18 @@ Mesh cube(int i) {
 
 TEST_F(VoxMapCacheTest, TheLongestUnusedFilesGoFirstWhenTheFolderIsFull) {
   build(cube(0));
-  const std::uint64_t each = fs::file_size(cache_.fileOf(cube(0), kSettings));
-  write(folder_.path() / "maps" / "notes.txt", std::string(10 * each, 'x'));  // not the cache's own
+  const std::uint64_t each = fs::file_size(cache_.fileOf(cube(0), kCachedSettings));
+  test::write(folder_.path() / "maps" / "notes.txt", std::string(10 * each, 'x'));  // not the cache's own
   const VoxMapCache small(folder_.path() / "maps", {}, 4 * each + each / 2);
-  const auto isKept = [&](int i) { return fs::exists(small.fileOf(cube(i), kSettings)); };
+  const auto isKept = [&](int i) { return fs::exists(small.fileOf(cube(i), kCachedSettings)); };
   for (int i = 1; i <= 3; ++i) {
-    (void)small.build(cube(i), kSettings);
+    (void)small.build(cube(i), kCachedSettings);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // clocks of file systems are coarse
   }
-  (void)small.build(cube(0), kSettings);  // used again
+  (void)small.build(cube(0), kCachedSettings);  // used again
   for (int i = 0; i <= 3; ++i) EXPECT_TRUE(isKept(i)) << i;
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  (void)small.build(cube(4), kSettings);
+  (void)small.build(cube(4), kCachedSettings);
   EXPECT_TRUE(isKept(0) && isKept(3) && isKept(4));
   EXPECT_FALSE(isKept(1)) << "the longest unused";
   EXPECT_TRUE(fs::exists(folder_.path() / "maps" / "notes.txt"));
@@ -254,8 +247,8 @@ TEST_F(VoxMapCacheTest, AFullDiskGivesOneWarningAndTheModels) {
   const PointShell shell = shellOf(cache_, cube(1));
   setrlimit(RLIMIT_FSIZE, &old);
   sigaction(SIGXFSZ, &before, nullptr);
-  expectSame(first, buildVoxMap(cube(1), kSettings));
-  expectSame(second, buildVoxMap(cube(2), kSettings));
+  expectSame(first, buildVoxMap(cube(1), kCachedSettings));
+  expectSame(second, buildVoxMap(cube(2), kCachedSettings));
   expectSame(shell, buildPointShell(Solid(cube(1)), kPoints));
   ASSERT_EQ(warnings_.size(), 1u);
   EXPECT_NE(warnings_[0].find("could not be kept"), std::string::npos) << warnings_[0];

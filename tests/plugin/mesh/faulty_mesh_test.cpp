@@ -19,8 +19,8 @@
 namespace vps::test {
 namespace {
 
-constexpr double kVoxel_m = 0.5e-3;
-constexpr VoxMapSettings kSettings = {kVoxel_m, 4};
+constexpr double kFaultyVoxel_m = 0.5e-3;
+constexpr VoxMapSettings kFaultySettings = {kFaultyVoxel_m, 4};
 
 /// The signed distance to the true surface, or -1 and 1 where a formula gives only the sign.
 using Truth = std::function<double(const Vec3&)>;
@@ -54,7 +54,7 @@ Truth distanceTo(const Mesh& closed) {
 
 MeshReport reportOf(const Mesh& mesh, VoxMap* map = nullptr) {
   MeshReport report;
-  const VoxMap built = buildVoxMap(mesh, kSettings, "", {}, &report);
+  const VoxMap built = buildVoxMap(mesh, kFaultySettings, "", {}, &report);
   if (map != nullptr) *map = built;
   return report;
 }
@@ -100,7 +100,7 @@ TEST(FaultyMesh, APlaneHoleOfAnySizeLeavesEverySignRight) {
   // the hole's own plane: over a hole of size a the slope of w is at least 1 / pi a in its middle and larger
   // at its rim.
   for (const double hole_voxels : {0.1, 0.5, 1.0, 3.0, 10.0, 30.0}) {
-    const double hole_m = hole_voxels * kVoxel_m;
+    const double hole_m = hole_voxels * kFaultyVoxel_m;
     const Pose X = RandomPoints(3).pose(0.01), X_inverse = X.inverse();
     const auto isInHole = [&](const Vec3& p) {
       const Vec3 q = X_inverse * p;
@@ -490,7 +490,7 @@ TEST(FaultyMesh, AFreeSheetHasNoInside) {
   EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
   const Vec3 on_sheet = o + Vec3(0.003, 0.003, 0.0003);
-  EXPECT_LT(map.distance(on_sheet), kVoxel_m);  // the sheet is part of the surface
+  EXPECT_LT(map.distance(on_sheet), kFaultyVoxel_m);  // the sheet is part of the surface
 }
 
 TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOneThread) {
@@ -498,9 +498,9 @@ TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOneThread) {
   mesh.triangles.erase(mesh.triangles.begin() + 10, mesh.triangles.begin() + 30);
   append(mesh, transformed(makeBox({0.02, 0.004, 0.004}), Pose(Mat3::Identity(), bounds(mesh).center())));
   MeshReport report_many, report_one;
-  const VoxMap many = buildVoxMap(mesh, kSettings, "", {}, &report_many);
+  const VoxMap many = buildVoxMap(mesh, kFaultySettings, "", {}, &report_many);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const VoxMap one = buildVoxMap(mesh, kSettings, "", {}, &report_one);
+  const VoxMap one = buildVoxMap(mesh, kFaultySettings, "", {}, &report_one);
   EXPECT_EQ(describe(report_many), describe(report_one));
   EXPECT_EQ(report_many.certain_share, report_one.certain_share);
   RandomPoints random(8);

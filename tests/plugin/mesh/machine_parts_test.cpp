@@ -8,12 +8,11 @@
 #include "support/fit.h"
 #include "support/gear.h"
 #include "support/screw.h"
+#include "support/units.h"
 #include "vps/mesh_distance.h"
 
 namespace vps::test {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 void expectClosedSolid(const Mesh& mesh) {
   const MeshReport report = checkMesh(mesh);

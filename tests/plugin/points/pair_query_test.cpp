@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Contact of a pair in both directions.
+#include "support/units.h"
 #include "vps/query.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@
 namespace vps::test {
 namespace {
 
-constexpr double kMm = 1e-3, kStiffness = 1e11;
+constexpr double kPairStiffness = 1e11;
 
 struct Part {
   VoxMap map;
@@ -44,14 +45,14 @@ TEST(PairQuery, ActionEqualsReactionBothWays) {
   for (int n = 0; n < 100; ++n) {
     const Pose X_AB = random.pose(7 * kMm);
     TouchSummary on_b, on_a;
-    queryBothSides(block().side(), ball().side(), X_AB, {}, kStiffness, p_AO, on_b);
+    queryBothSides(block().side(), ball().side(), X_AB, {}, kPairStiffness, p_AO, on_b);
     const Pose X_BA = X_AB.inverse();
-    queryBothSides(ball().side(), block().side(), X_BA, {}, kStiffness, X_BA * p_AO, on_a);
+    queryBothSides(ball().side(), block().side(), X_BA, {}, kPairStiffness, X_BA * p_AO, on_a);
     EXPECT_EQ(on_a.count, on_b.count);
     if (on_b.count == 0) continue;
     ++touching;
     // Poses are rounded to 1e-16; floats in positions and normals to 1e-7 of forces that may cancel.
-    const double total_N = kStiffness * on_b.volume_m3;
+    const double total_N = kPairStiffness * on_b.volume_m3;
     EXPECT_LT((rotated(X_AB.R, on_a.F_O_M).f + on_b.F_O_M.f).norm(), 1e-6 * total_N);
     EXPECT_LT((rotated(X_AB.R, on_a.F_O_M).tau + on_b.F_O_M.tau).norm(), 1e-6 * total_N * 12 * kMm);
   }
@@ -68,9 +69,9 @@ TEST(PairQuery, BothSidesConvergeToTheIntegral) {
     const double r_max = std::sqrt(R * R - c * c), r = (i + 0.5) * r_max / 100000, rho = std::hypot(r, c);
     plane_side += 2 * std::numbers::pi * r * (R - rho) * (c / rho) * r_max / 100000;
   }
-  const double expected_N = 0.5 * kStiffness * (std::numbers::pi * R * delta_m * delta_m + plane_side);
+  const double expected_N = 0.5 * kPairStiffness * (std::numbers::pi * R * delta_m * delta_m + plane_side);
   TouchSummary sum;
-  queryBothSides(block().side(), ball().side(), sunkBall(delta_m), {}, kStiffness, Vec3::Zero(), sum);
+  queryBothSides(block().side(), ball().side(), sunkBall(delta_m), {}, kPairStiffness, Vec3::Zero(), sum);
   // The sum over points of a force that grows from the rim has an error: 1 % was measured at a spacing of 0.2
   // mm in a cap 1.5 mm wide.
   EXPECT_NEAR(sum.F_O_M.f.z(), expected_N, 0.03 * expected_N);
@@ -82,8 +83,8 @@ TEST(PairQuery, AMemoryChangesNoBit) {
   for (int n = 0; n < 200; ++n) {
     const Pose X_AB = sunkBall(0.2 * kMm * std::sin(0.05 * n));
     TouchSummary with, without;
-    queryBothSides(block().side(), ball().side(), X_AB, {}, kStiffness, Vec3::Zero(), with, &memory);
-    queryBothSides(block().side(), ball().side(), X_AB, {}, kStiffness, Vec3::Zero(), without);
+    queryBothSides(block().side(), ball().side(), X_AB, {}, kPairStiffness, Vec3::Zero(), with, &memory);
+    queryBothSides(block().side(), ball().side(), X_AB, {}, kPairStiffness, Vec3::Zero(), without);
     ASSERT_EQ(with.count, without.count);
     ASSERT_EQ(with.F_O_M.f, without.F_O_M.f);
     ASSERT_EQ(with.F_O_M.tau, without.F_O_M.tau);
@@ -95,7 +96,7 @@ TEST(PairQuery, NothingAllocates) {
   const PairSide on_block = block().side(), on_ball = ball().side();  // builds both bodies, if none has yet
   vps_test::NoAllocScope guard;
   TouchSummary sum;
-  queryBothSides(on_block, on_ball, X_MP, {}, kStiffness, Vec3::Zero(), sum);
+  queryBothSides(on_block, on_ball, X_MP, {}, kPairStiffness, Vec3::Zero(), sum);
 }
 
 }  // namespace

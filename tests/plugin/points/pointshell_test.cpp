@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/pointshell.h"
+#include "support/units.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,6 @@
 namespace vps {
 namespace {
 
-constexpr double kMm = 1e-3;
 constexpr double kRounding = 1e-15;  // of coordinates of a few centimetres
 
 double nearestDistance(const Vec3& p, const std::vector<Vec3>& points) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // With temporal coherence the answer equals the exhaustive one to the bit, for any motion.
 #include "vps/query_memory.h"
+#include "support/units.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@
 namespace vps {
 namespace {
 
-constexpr double kMm = 1e-3, kUm = 1e-6, kStiffness = 1e11;
+constexpr double kStiffness = 1e11;
 
 struct Scene {
   const char* name;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The file has more than 400 lines because all tests of the contact query share its helpers.
 #include "vps/query.h"
+#include "support/units.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,6 @@
 namespace vps {
 namespace {
 
-constexpr double kMm = 1e-3, kUm = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Queries store positions as floats of a few voxels from the leaf, which may be off by 3e-5 voxel.

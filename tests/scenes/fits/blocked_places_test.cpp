@@ -9,19 +9,20 @@
 #include <utility>
 #include <vector>
 
+#include "support/units.h"
 #include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {
 
-constexpr double kMm = 1e-3, kUm = 1e-6, kDegree = std::numbers::pi / 180;
+constexpr double kDegree = std::numbers::pi / 180;
 
 CheckedPlaces placesOf(const std::vector<DrawnPart>& parts) {
   return checkAssembly("places", parts, {.has_play = false, .has_places = true}).places;
 }
 
-DrawnPart part(const std::string& name, const Mesh& mesh, const Vec3& p_W = Vec3::Zero(),
-               bool is_fixed = false) {
+DrawnPart partAt(const std::string& name, const Mesh& mesh, const Vec3& p_W = Vec3::Zero(),
+                 bool is_fixed = false) {
   DrawnPart out{name, mesh, Pose::translation(p_W), {}};
   out.is_fixed = is_fixed;
   return out;
@@ -32,7 +33,7 @@ Vec3 up(double z_m) {
 }
 
 DrawnPart plate(bool is_fixed = true) {  // its top is at z = 4 mm
-  return part("plate", makeBox({30 * kMm, 30 * kMm, 8 * kMm}), Vec3::Zero(), is_fixed);
+  return partAt("plate", makeBox({30 * kMm, 30 * kMm, 8 * kMm}), Vec3::Zero(), is_fixed);
 }
 
 using Profile = std::vector<std::pair<double, double>>;
@@ -74,16 +75,16 @@ TEST(BlockedPlaces, TheErrorOfAFlatClashIsNotThatOfRoundFacesBesideIt) {
       const Mesh hub =
           swept({{5.02, -6}, {20, -6}, {20, 0}, {5.02, 0}}, segments, std::numbers::pi / segments);
       const CheckedPlaces places =
-          placesOf({part("hub", hub, Vec3::Zero(), is_fixed), part("pin", pin, up(-20 * kUm))});
+          placesOf({partAt("hub", hub, Vec3::Zero(), is_fixed), partAt("pin", pin, up(-20 * kUm))});
       EXPECT_NE(places.verdict, Verdict::Blocked) << segments << ": " << places.reason;
     }
 }
 
 TEST(BlockedPlaces, APressFitWithinALeverDoesNotTellWhereTheLeverIs) {
   const Mesh lever = makeTube(10 * kMm, 5 * kMm, 6 * kMm, 180);
-  DrawnPart bushing = part("bushing", makeTube(5.005 * kMm, 3 * kMm, 6 * kMm, 180), up(7 * kMm - 60 * kUm));
+  DrawnPart bushing = partAt("bushing", makeTube(5.005 * kMm, 3 * kMm, 6 * kMm, 180), up(7 * kMm - 60 * kUm));
   bushing.press_fit_m = 20 * kUm;
-  const CheckedPlaces places = placesOf({plate(), part("lever", lever, up(7 * kMm - 60 * kUm)), bushing});
+  const CheckedPlaces places = placesOf({plate(), partAt("lever", lever, up(7 * kMm - 60 * kUm)), bushing});
   ASSERT_EQ(places.verdict, Verdict::Fits) << places.reason;
   ASSERT_EQ(places.moved.size(), 2U);
   for (const MovedPart& moved : places.moved) EXPECT_NEAR(moved.by_W.z(), 60 * kUm, 1 * kUm);
@@ -91,10 +92,10 @@ TEST(BlockedPlaces, APressFitWithinALeverDoesNotTellWhereTheLeverIs) {
 
 TEST(BlockedPlaces, WhatMayOverlapTiesNothing) {
   const auto drawn = [](bool is_fixed) {
-    DrawnPart seal = part("seal", makeTube(8 * kMm, 6 * kMm, 2 * kMm, 48), up(4 * kMm));
+    DrawnPart seal = partAt("seal", makeTube(8 * kMm, 6 * kMm, 2 * kMm, 48), up(4 * kMm));
     seal.allow_overlap = true;
     return placesOf({plate(), seal,
-                     part("lid", makeBox({20 * kMm, 20 * kMm, 6 * kMm}), up(7 * kMm - 2 * kUm), is_fixed)});
+                     partAt("lid", makeBox({20 * kMm, 20 * kMm, 6 * kMm}), up(7 * kMm - 2 * kUm), is_fixed)});
   };
   const CheckedPlaces loose = drawn(false);
   ASSERT_EQ(loose.verdict, Verdict::Fits) << loose.reason;
@@ -104,19 +105,19 @@ TEST(BlockedPlaces, WhatMayOverlapTiesNothing) {
 }
 
 TEST(BlockedPlaces, WhatIsPressedIntoAFixedPartIsNotFixedItself) {
-  DrawnPart bushing = part("bushing", makeTube(5.005 * kMm, 3 * kMm, 6 * kMm, 180), up(-50 * kUm));
+  DrawnPart bushing = partAt("bushing", makeTube(5.005 * kMm, 3 * kMm, 6 * kMm, 180), up(-50 * kUm));
   bushing.press_fit_m = 20 * kUm;
   const CheckedPlaces places =
-      placesOf({part("hub", makeTube(10 * kMm, 5 * kMm, 6 * kMm, 180), Vec3::Zero(), true), bushing,
-                part("floor", makeBox({30 * kMm, 30 * kMm, 8 * kMm}), up(-7 * kMm), true)});
+      placesOf({partAt("hub", makeTube(10 * kMm, 5 * kMm, 6 * kMm, 180), Vec3::Zero(), true), bushing,
+                partAt("floor", makeBox({30 * kMm, 30 * kMm, 8 * kMm}), up(-7 * kMm), true)});
   EXPECT_EQ(places.verdict, Verdict::NotShown) << places.reason;
 }
 
 TEST(BlockedPlaces, APinThatIsDrawnTooDeepLeavesAlongItsOwnAxis) {
   const Mesh block = swept({{1, -5}, {15, -5}, {15, 10}, {5.005, 10}, {5.005, 0}, {1, 0}}, 180);
   const auto drawn = [&](double deep_m) {
-    return placesOf({part("block", block, Vec3::Zero(), true),
-                     part("dowel", makeCylinder(5 * kMm, 20 * kMm, 180), up(10 * kMm - deep_m))});
+    return placesOf({partAt("block", block, Vec3::Zero(), true),
+                     partAt("dowel", makeCylinder(5 * kMm, 20 * kMm, 180), up(10 * kMm - deep_m))});
   };
   // The fit gives the pin a tolerance of 30 um.
   EXPECT_EQ(drawn(20 * kUm).verdict, Verdict::Fits);
@@ -128,8 +129,8 @@ TEST(BlockedPlaces, APinThatIsDrawnTooDeepLeavesAlongItsOwnAxis) {
 
 TEST(BlockedPlaces, APinInALooseLeverMovesWithIt) {
   const CheckedPlaces places =
-      placesOf({plate(), part("lever", makeTube(10 * kMm, 5 * kMm + 2.5 * kUm, 6 * kMm, 180), up(12 * kMm)),
-                part("pin", makeCylinder(5 * kMm, 14 * kMm, 180), up(11 * kMm - 100 * kUm))});
+      placesOf({plate(), partAt("lever", makeTube(10 * kMm, 5 * kMm + 2.5 * kUm, 6 * kMm, 180), up(12 * kMm)),
+                partAt("pin", makeCylinder(5 * kMm, 14 * kMm, 180), up(11 * kMm - 100 * kUm))});
   EXPECT_NE(places.verdict, Verdict::Blocked) << places.reason;
 }
 
@@ -139,14 +140,14 @@ TEST(BlockedPlaces, CradlesAtTwoPlacesAlongAShaftDoNotSurroundIt) {
   Mesh bracket = swept({{5, 0}, {8, 0}, {8, 5}, {5, 5}}, 130, -65 * kDegree, 130 * kDegree);
   append(bracket, swept({{5, 25}, {8, 25}, {8, 30}, {5, 30}}, 130, 115 * kDegree, 130 * kDegree));
   const CheckedPlaces places = placesOf(
-      {part("bracket", bracket), part("shaft", makeCylinder(5.005 * kMm, 34 * kMm, 720), up(15 * kMm))});
+      {partAt("bracket", bracket), partAt("shaft", makeCylinder(5.005 * kMm, 34 * kMm, 720), up(15 * kMm))});
   EXPECT_EQ(places.verdict, Verdict::Fits) << places.reason;
 }
 
 TEST(BlockedPlaces, ADiscLargerThanABoreStandsInItAtASlant) {
   const auto drawn = [](double thick_m) {
-    return placesOf({part("hub", makeTube(10 * kMm, 5 * kMm, 12 * kMm, 720), Vec3::Zero(), true),
-                     part("disc", makeCylinder(5.01 * kMm, thick_m, 720))});
+    return placesOf({partAt("hub", makeTube(10 * kMm, 5 * kMm, 12 * kMm, 720), Vec3::Zero(), true),
+                     partAt("disc", makeCylinder(5.01 * kMm, thick_m, 720))});
   };
   EXPECT_NE(drawn(0.1 * kMm).verdict, Verdict::Blocked);
   EXPECT_EQ(drawn(4 * kMm).verdict, Verdict::Blocked);
@@ -156,21 +157,21 @@ TEST(BlockedPlaces, ADiscLargerThanABoreStandsInItAtASlant) {
 TEST(BlockedPlaces, AShaftMustBeRoundAndFullToBeTooLarge) {
   const Mesh slit_hub = swept({{5, -6}, {10, -6}, {10, 6}, {5, 6}}, 300, 10 * kDegree, 340 * kDegree);
   const Mesh shaft = makeCylinder(5.01 * kMm, 20 * kMm, 720);
-  EXPECT_EQ(placesOf({part("hub", slit_hub), part("shaft", shaft)}).verdict, Verdict::Blocked);
+  EXPECT_EQ(placesOf({partAt("hub", slit_hub), partAt("shaft", shaft)}).verdict, Verdict::Blocked);
   const Mesh slit_shaft =
       swept({{2, -10}, {5.01, -10}, {5.01, 10}, {2, 10}}, 300, 10 * kDegree, 340 * kDegree);
   const Mesh hub = makeTube(10 * kMm, 5 * kMm, 12 * kMm, 720);
-  EXPECT_NE(placesOf({part("hub", hub), part("shaft", slit_shaft)}).verdict, Verdict::Fits);
+  EXPECT_NE(placesOf({partAt("hub", hub), partAt("shaft", slit_shaft)}).verdict, Verdict::Fits);
   const Mesh sleeve = makeTube(5.01 * kMm, 4.5 * kMm, 20 * kMm, 720);  // a thin wall alone proves nothing
-  EXPECT_EQ(placesOf({part("hub", hub), part("shaft", sleeve)}).verdict, Verdict::NotShown);
+  EXPECT_EQ(placesOf({partAt("hub", hub), partAt("shaft", sleeve)}).verdict, Verdict::NotShown);
 }
 
 TEST(BlockedPlaces, ABlockMuchWiderThanAFixedSlotIsBlocked) {
   // The overlap is 0.4 mm in each of two walls; no place within 0.5 mm changes the mean of both.
   const Mesh wall = makeBox({8 * kMm, 30 * kMm, 20 * kMm});
   const CheckedPlaces places =
-      placesOf({part("left", wall, {-9 * kMm, 0, 0}, true), part("right", wall, {9 * kMm, 0, 0}, true),
-                part("block", makeBox({10.8 * kMm, 14 * kMm, 8 * kMm}))});
+      placesOf({partAt("left", wall, {-9 * kMm, 0, 0}, true), partAt("right", wall, {9 * kMm, 0, 0}, true),
+                partAt("block", makeBox({10.8 * kMm, 14 * kMm, 8 * kMm}))});
   EXPECT_EQ(places.verdict, Verdict::Blocked);
   EXPECT_NE(places.reason.find("within 500.0 um of where they are drawn"), std::string::npos)
       << places.reason;
@@ -179,7 +180,7 @@ TEST(BlockedPlaces, ABlockMuchWiderThanAFixedSlotIsBlocked) {
 TEST(BlockedPlaces, OfASurfaceWithAHoleNothingIsProven) {
   Mesh open = makeBox({6 * kMm, 6 * kMm, 6 * kMm});
   const auto drawn = [&](double deep_m) {
-    return placesOf({plate(), part("block", open, up(7 * kMm - deep_m))});
+    return placesOf({plate(), partAt("block", open, up(7 * kMm - deep_m))});
   };
   EXPECT_EQ(drawn(2 * kMm).verdict, Verdict::Blocked);
   open.triangles.pop_back();
@@ -188,10 +189,11 @@ TEST(BlockedPlaces, OfASurfaceWithAHoleNothingIsProven) {
 
 TEST(BlockedPlaces, TwoThatAreEachLessDeepThanBothMayMoveShareTheWay) {
   const Mesh box = makeBox({10 * kMm, 10 * kMm, 10 * kMm});
-  const CheckedPlaces places = placesOf({part("a", box), part("b", box, up(10 * kMm - 0.7 * kMm))});
+  const CheckedPlaces places = placesOf({partAt("a", box), partAt("b", box, up(10 * kMm - 0.7 * kMm))});
   ASSERT_EQ(places.verdict, Verdict::Fits) << places.reason;
   EXPECT_EQ(places.moved.size(), 2U);
-  EXPECT_EQ(placesOf({part("a", box), part("b", box, up(10 * kMm - 1.1 * kMm))}).verdict, Verdict::Blocked);
+  EXPECT_EQ(placesOf({partAt("a", box), partAt("b", box, up(10 * kMm - 1.1 * kMm))}).verdict,
+            Verdict::Blocked);
 }
 
 // An open sheet as drawn may or may not overlap the ring around it. The verdict of the whole assembly reports
@@ -203,8 +205,8 @@ TEST(BlockedPlaces, PairsThatCannotBeToldAsDrawnDoNotHidePlaces) {
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
   const CheckResult found = checkAssembly(
       "places",
-      {plate(), part("ring", makeTube(10 * kMm, 8 * kMm, 6 * kMm, 48), up(7 * kMm)), part("sheet", sheet),
-       part("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), up(6.9 * kMm))},
+      {plate(), partAt("ring", makeTube(10 * kMm, 8 * kMm, 6 * kMm, 48), up(7 * kMm)), partAt("sheet", sheet),
+       partAt("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), up(6.9 * kMm))},
       {.has_play = false, .has_places = true});
   EXPECT_EQ(found.uncertain(), 1U);
   EXPECT_EQ(found.places.verdict, Verdict::Fits) << found.places.reason;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fits/iso_sizes.h"
+#include "scenes/drawn_part.h"
 #include "support/lathe.h"
 #include "vps_scenes/fits/check.h"
 
@@ -16,9 +17,6 @@ const CheckSettings kFits{.has_fits = true, .has_play = false};
 
 std::vector<CheckedFit> fitsOf(const std::vector<DrawnPart>& parts) {
   return checkAssembly("test", parts, kFits).fits;
-}
-DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pose()) {
-  return {name, mesh, X_WP, {}, false};
 }
 
 /// Tabulated values of ISO 286-2:2010 [um].

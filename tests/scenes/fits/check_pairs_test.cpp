@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scenes/drawn_part.h"
 #include "support/faulty_meshes.h"
 #include "vps/errors.h"
 #include "vps/mesh_overlap.h"
@@ -18,9 +19,6 @@ const CheckSettings kPairsOnly{.has_fits = false, .has_play = false};
 
 CheckResult check(const std::vector<DrawnPart>& parts) {
   return checkAssembly("test", parts, kPairsOnly);
-}
-DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pose()) {
-  return {name, mesh, X_WP, {}, false};
 }
 DrawnPart block(const std::string& name, const Vec3& size_m, const Pose& X_WP) {
   return part(name, makeBox(size_m), X_WP);

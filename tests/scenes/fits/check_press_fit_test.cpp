@@ -12,9 +12,9 @@
 namespace vps::scenes {
 namespace {
 
-const CheckSettings kFits{.has_fits = true, .has_play = false};
+const CheckSettings kPressFits{.has_fits = true, .has_play = false};
 
-DrawnPart part(const std::string& name, const Mesh& mesh, double press_fit_m = 0) {
+DrawnPart pressedPart(const std::string& name, const Mesh& mesh, double press_fit_m = 0) {
   DrawnPart out{name, mesh, Pose(), {}, false};
   out.press_fit_m = press_fit_m;
   return out;
@@ -23,11 +23,12 @@ DrawnPart part(const std::string& name, const Mesh& mesh, double press_fit_m = 0
 /// A ring with a bore of 20 mm, an outer diameter of 40 mm and a length of 30 mm, and a pin in it whose
 /// diameter is larger by a given interference.
 CheckResult ringAndPin(double interference_m, double declared_m, int segments = 720,
-                       const CheckSettings& settings = kFits) {
+                       const CheckSettings& settings = kPressFits) {
   const Mesh pin = makeCylinder(10e-3 + interference_m / 2, 50e-3, segments);
-  return checkAssembly("test",
-                       {part("ring", makeTube(20e-3, 10e-3, 30e-3, segments)), part("pin", pin, declared_m)},
-                       settings);
+  return checkAssembly(
+      "test",
+      {pressedPart("ring", makeTube(20e-3, 10e-3, 30e-3, segments)), pressedPart("pin", pin, declared_m)},
+      settings);
 }
 
 // For a solid steel shaft and a hub of twice its diameter, p = delta E / (d (5/3 + 1)), since nu cancels.
@@ -73,11 +74,11 @@ TEST(CheckPressFit, PressureAndForceAreThoseOfLame) {
 
 TEST(CheckPressFit, AHollowShaftAndOtherMaterialsGiveWay) {
   const Mesh ring = makeTube(20e-3, 10e-3, 30e-3, 720);
-  DrawnPart sleeve = part("sleeve", makeTube(10.01e-3, 5e-3, 50e-3, 720), 30e-6);
+  DrawnPart sleeve = pressedPart("sleeve", makeTube(10.01e-3, 5e-3, 50e-3, 720), 30e-6);
   sleeve.youngs_modulus_Pa = 70e9;
   sleeve.poissons_ratio = 0.33;
   sleeve.friction = 0.6;
-  const CheckResult result = checkAssembly("test", {part("ring", ring), sleeve}, kFits);
+  const CheckResult result = checkAssembly("test", {pressedPart("ring", ring), sleeve}, kPressFits);
   ASSERT_TRUE(result.fits.at(0).press);
   const CheckedPress& press = *result.fits[0].press;
   EXPECT_NEAR(press.hole_m, 10e-3, 1e-6);
@@ -91,13 +92,13 @@ TEST(CheckPressFit, AnInterferenceThatTheFacetsHideIsSeenFromTheirCorners) {
   const CheckResult hidden = ringAndPin(10e-6, 0, 36);
   const CheckResult as_meshes =
       checkAssembly("test",
-                    {part("ring", makeTube(20e-3, 10e-3, 30e-3, 36)),
+                    {pressedPart("ring", makeTube(20e-3, 10e-3, 30e-3, 36)),
                      {"pin",
                       makeCylinder(10e-3 + 5e-6, 50e-3, 36),
                       Pose(rotationFromVector(Vec3(0, 0, std::numbers::pi / 36)), Vec3::Zero()),
                       {},
                       false}},
-                    kFits);
+                    kPressFits);
   for (const CheckResult* result : {&hidden, &as_meshes}) {
     EXPECT_EQ(result->pairs.at(0).state, PairState::Clash);
     EXPECT_NEAR(result->pairs[0].interference_depth_m, 5e-6, 0.1e-6);
@@ -114,13 +115,13 @@ TEST(CheckPressFit, AnInterferenceThatTheFacetsHideIsSeenFromTheirCorners) {
 
 TEST(CheckPressFit, ABlockPressedInWithoutAFitIsJudgedByItsDepth) {
   const auto check = [](double depth_m) {
-    DrawnPart block = part("block", makeBox(Vec3(0.01, 0.02, 0.03)), 20e-6);
+    DrawnPart block = pressedPart("block", makeBox(Vec3(0.01, 0.02, 0.03)), 20e-6);
     block.X_WP = Pose::translation(Vec3(0.02, 0.01, 0.015 - depth_m));
     return checkAssembly("test",
-                         {part("plate", transformed(makeBox(Vec3(0.1, 0.1, 0.02)),
-                                                    Pose::translation(Vec3(0, 0, -0.01)))),
+                         {pressedPart("plate", transformed(makeBox(Vec3(0.1, 0.1, 0.02)),
+                                                           Pose::translation(Vec3(0, 0, -0.01)))),
                           block},
-                         kFits)
+                         kPressFits)
         .pairs.at(0)
         .state;
   };
@@ -136,7 +137,7 @@ TEST(CheckPressFit, ADeclaredPressFitDoesNotHideAnotherOverlap) {
   const auto check = [&](double below_m) {
     const Mesh pin =
         test::lathe({{0, -below_m}, {10.0075e-3, -below_m}, {10.0075e-3, 40e-3}, {0, 40e-3}}, 720);
-    return checkAssembly("test", {part("seat", seat), part("pin", pin, 20e-6)}, kFits);
+    return checkAssembly("test", {pressedPart("seat", seat), pressedPart("pin", pin, 20e-6)}, kPressFits);
   };
   EXPECT_EQ(check(0).pairs.at(0).state, PairState::PressFit);
   EXPECT_EQ(check(100e-6).pairs.at(0).state, PairState::Clash);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/drawn_part.h"
 #include "support/lathe.h"
 #include "vps_scenes/fits/check.h"
 
@@ -13,9 +14,6 @@ namespace {
 
 CheckSettings pictures() {
   return {.has_play = false, .has_sections = true, .has_maps = true};
-}
-DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pose()) {
-  return {name, mesh, X_WP, {}, false};
 }
 
 /// The sum of the areas of all chains; chains around holes count as negative.

@@ -46,7 +46,7 @@ struct RodAndNut {
   Mesh rod = test::makeThreadedRod(threadOf(10)), nut = test::makeNut(threadOf(6, kRadial), 11e-3);
 };
 
-CheckResult check(const std::vector<DrawnPart>& parts, bool has_play = false) {
+CheckResult checkThreads(const std::vector<DrawnPart>& parts, bool has_play = false) {
   return checkAssembly("test", parts, {.has_fits = true, .has_play = has_play});
 }
 
@@ -68,8 +68,8 @@ TEST(CheckThreads, ANutOnARodIsAThreadWithItsLeadAndHand) {
   const RodAndNut made;
   const Pose X(rotationFromVector(Vec3(0.7, -0.3, 0.9)), Vec3(0.04, 0.1, -0.02));
   for (const bool is_left : {false, true}) {
-    const CheckResult found = check({drawn("nut", is_left ? mirrored(made.nut) : made.nut, X),
-                                     drawn("rod", is_left ? mirrored(made.rod) : made.rod, X)});
+    const CheckResult found = checkThreads({drawn("nut", is_left ? mirrored(made.nut) : made.nut, X),
+                                            drawn("rod", is_left ? mirrored(made.rod) : made.rod, X)});
     ASSERT_EQ(found.fits.size(), 1U);
     const CheckedFit& fit = found.fits[0];
     EXPECT_EQ(fit.kind, FitKind::Thread);
@@ -97,22 +97,22 @@ TEST(CheckThreads, WhatIsNoThreadInAThreadIsNoThreadFit) {
   };
   test::ThreadShape fine = threadOf(10);
   fine.pitch_m = 1.25e-3;
-  EXPECT_TRUE(has(check({drawn("nut", made.nut), drawn("rod", made.rod)})));
-  EXPECT_FALSE(has(check({drawn("nut", made.nut), drawn("rod", mirrored(made.rod))})));
-  EXPECT_FALSE(has(check({drawn("nut", made.nut), drawn("rod", test::makeThreadedRod(fine))})));
-  EXPECT_FALSE(has(check({drawn("nut", made.nut), drawn("pin", makeCylinder(5e-3, 0.03, 96))})));
-  EXPECT_FALSE(has(check({drawn("tube", makeTube(9e-3, 6.1e-3, 0.01, 96)), drawn("rod", made.rod)})));
+  EXPECT_TRUE(has(checkThreads({drawn("nut", made.nut), drawn("rod", made.rod)})));
+  EXPECT_FALSE(has(checkThreads({drawn("nut", made.nut), drawn("rod", mirrored(made.rod))})));
+  EXPECT_FALSE(has(checkThreads({drawn("nut", made.nut), drawn("rod", test::makeThreadedRod(fine))})));
+  EXPECT_FALSE(has(checkThreads({drawn("nut", made.nut), drawn("pin", makeCylinder(5e-3, 0.03, 96))})));
+  EXPECT_FALSE(has(checkThreads({drawn("tube", makeTube(9e-3, 6.1e-3, 0.01, 96)), drawn("rod", made.rod)})));
   // The parts are next to each other.
-  EXPECT_FALSE(
-      has(check({drawn("nut", made.nut, Pose::translation({17.2e-3, 0, 0})), drawn("rod", made.rod)})));
+  EXPECT_FALSE(has(
+      checkThreads({drawn("nut", made.nut, Pose::translation({17.2e-3, 0, 0})), drawn("rod", made.rod)})));
 }
 
 TEST(CheckThreads, ANutLeavesItsRodByScrewAtBothEnds) {
   const RodAndNut made;
   for (const bool is_left : {false, true}) {
-    const CheckResult found = check({drawn("nut", is_left ? mirrored(made.nut) : made.nut),
-                                     drawn("rod", is_left ? mirrored(made.rod) : made.rod)},
-                                    true);
+    const CheckResult found = checkThreads({drawn("nut", is_left ? mirrored(made.nut) : made.nut),
+                                            drawn("rod", is_left ? mirrored(made.rod) : made.rod)},
+                                           true);
     for (const CheckedPart& part : found.parts) {
       EXPECT_TRUE(part.ways_out_W.empty()) << part.name;  // the part cannot leave in a straight line
       ASSERT_EQ(part.screw_ways_out.size(), 2U) << part.name;
@@ -134,7 +134,7 @@ TEST(CheckThreads, ANutLeavesABoltOnlyAwayFromItsHead) {
   Mesh head = makeCylinder(9e-3, 4e-3, 48);
   for (Vec3& v : head.vertices) v.z() -= 0.5 * 10 * 1.75e-3 + 1e-3;  // 1 mm into the rod
   append(bolt, head);
-  const CheckResult found = check({drawn("nut", made.nut), drawn("bolt", bolt)}, true);
+  const CheckResult found = checkThreads({drawn("nut", made.nut), drawn("bolt", bolt)}, true);
   for (const CheckedPart& part : found.parts) {
     ASSERT_EQ(part.screw_ways_out.size(), 1U) << part.name;
     EXPECT_NEAR(part.screw_ways_out[0].axis_W.z(), part.name == "nut" ? 1 : -1, 1e-6);
@@ -145,7 +145,7 @@ TEST(CheckThreads, ANutLeavesABoltOnlyAwayFromItsHead) {
 TEST(CheckThreads, ThreadsThatAreDrawnOutOfPhaseClash) {
   const RodAndNut made;
   const Pose turned(rotationFromVector(Vec3(0, 0, 1.5)), Vec3::Zero());
-  const CheckResult found = check({drawn("nut", made.nut, turned), drawn("rod", made.rod)}, true);
+  const CheckResult found = checkThreads({drawn("nut", made.nut, turned), drawn("rod", made.rod)}, true);
   EXPECT_EQ(found.clashes(), 1U);
   for (const CheckedPart& part : found.parts) EXPECT_TRUE(part.screw_ways_out.empty());
 }
@@ -209,10 +209,10 @@ TEST(CheckThreads, TheLooseM16NutIsScrewedOffItsBolt) {
   const auto mesh = [&](const char* file) {
     return importCad((from / file).string(), metres).parts.at(0).mesh;
   };
-  const CheckResult found =
-      check({drawn("bolt", mesh("factory_bolt_m16_loose.obj")),
-             drawn("nut", mesh("factory_nut_m16_loose_subdiv_3x.obj"), Pose::translation({0, 0, 2e-3}))},
-            true);
+  const CheckResult found = checkThreads(
+      {drawn("bolt", mesh("factory_bolt_m16_loose.obj")),
+       drawn("nut", mesh("factory_nut_m16_loose_subdiv_3x.obj"), Pose::translation({0, 0, 2e-3}))},
+      true);
   ASSERT_EQ(found.fits.size(), 1U);
   EXPECT_EQ(found.fits[0].thread, "M16");
   ASSERT_EQ(found.parts[1].screw_ways_out.size(), 1U);  // the bolt's head is at the other end

@@ -9,21 +9,15 @@
 #include <numbers>
 #include <random>
 
+#include "scenes/drawn_part.h"
+#include "support/units.h"
 #include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {
 
-constexpr double kMm = 1e-3, kUm = 1e-6;
-
 CheckResult check(const std::vector<DrawnPart>& parts) {
   return checkAssembly("places", parts, {.has_play = false, .has_places = true});
-}
-
-DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pose(), bool is_fixed = false) {
-  DrawnPart out{name, mesh, X_WP, {}};
-  out.is_fixed = is_fixed;
-  return out;
 }
 
 Pose at(double x_m, double z_m) {

@@ -2,6 +2,7 @@
 // Render node, device node and watcher of one session. Each node is a thread here, so that sanitizers check
 // all of them; tests/program/nodes_test.cpp runs processes.
 #include "vps_scenes/network/nodes.h"
+#include "scenes/session_name.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -19,14 +20,6 @@
 namespace vps::scenes {
 namespace {
 
-std::string session() {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  return std::string("nodes-")
-      .append(std::to_string(getpid()))
-      .append("-")
-      .append(std::to_string(std::hash<std::string>{}(info->name()) % 100000));
-}
-
 struct Ran {
   AssembleResult result;
   DeviceNodeResult device;
@@ -36,7 +29,7 @@ struct Ran {
 Ran runTwoPins(const std::string& file = "") {
   Scene scene = twoPins();
   RenderOptions render;
-  render.session = session();
+  render.session = sessionName("nodes");
   Ran ran;
   std::thread device([&ran, name = render.session] {
     ran.device = deviceNode({name, "", nullptr, {}, false, false});
@@ -79,7 +72,7 @@ TEST(Nodes, ALongStepOfPhysicsIsNoFault) {
   for (int i = 0; i < kSessions; ++i) {
     Scene scene = twoPins();
     RenderOptions render;
-    render.session = session() + "-" + std::to_string(i);
+    render.session = sessionName("nodes") + "-" + std::to_string(i);
     int steps = 0;
     render.after_step = [&steps](double) {
       if (++steps % 100 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -97,7 +90,7 @@ TEST(Nodes, ALongStepOfPhysicsIsNoFault) {
 }
 
 TEST(Nodes, AWatcherSeesStepsForcesAndVerdict) {
-  const std::string name = session();
+  const std::string name = sessionName("nodes");
   std::size_t snapshots = 0, forces = 0;
   std::vector<SessionNews> news;
   std::thread watch([&] {
@@ -127,7 +120,7 @@ TEST(Nodes, AWatcherSeesStepsForcesAndVerdict) {
 }
 
 TEST(Nodes, ASecondDeviceIsRefusedInWords) {
-  const std::string name = session();
+  const std::string name = sessionName("nodes");
   std::atomic<bool> stop{false};
   Scene scene = twoPins();
   RenderOptions render;
@@ -156,7 +149,7 @@ TEST(Nodes, ASecondDeviceIsRefusedInWords) {
 TEST(Nodes, LocalContactIsRefusedInWords) {
   Scene scene = twoPins();
   RenderOptions render;
-  render.session = session();
+  render.session = sessionName("nodes");
   render.has_local_contact = true;
   EXPECT_THROW(renderNode(scene, render), LoadError);
 }

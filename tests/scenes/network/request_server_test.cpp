@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Requests to a running render node. tests/program/ask_test.cpp tests the same with the program.
 #include "vps_scenes/network/request_server.h"
+#include "scenes/session_name.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -30,14 +31,6 @@
 
 namespace vps::scenes {
 namespace {
-
-std::string sessionName() {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  return std::string("requests-")
-      .append(std::to_string(getpid()))
-      .append("-")
-      .append(std::to_string(std::hash<std::string>{}(info->name()) % 100000));
-}
 
 /// A request handler for two pins, without sockets and without a run.
 class RequestHandlerTest : public testing::Test {
@@ -98,7 +91,7 @@ class RequestHandlerTest : public testing::Test {
     return std::string(answer.text.data()).find(words) != std::string::npos;
   }
 
-  std::string session_ = sessionName(), bytes_, answered_;
+  std::string session_ = sessionName("requests"), bytes_, answered_;
   std::unique_ptr<Link> link_ = makeSession(session_, "a scene"), device_;
   Scene scene_;
   RequestServerOptions options_;
@@ -454,7 +447,7 @@ class RequestServerTest : public testing::Test {
   }
   [[nodiscard]] RunRequests& requests() { return server_->work().requests; }
 
-  std::string session_ = sessionName(), recordings_;
+  std::string session_ = sessionName("requests"), recordings_;
   std::function<void()> before_hello_;
   std::atomic<bool> stop_{false}, is_over_{false};
   std::optional<RequestServer> server_;
@@ -537,10 +530,10 @@ TEST_F(RequestServerTest, AnotherSceneEndsTheRunAndIsNext) {
 }
 
 TEST(SessionRequest, WhereNobodyAnswersThatIsSaid) {
-  EXPECT_THROW((void)SessionRequest(sessionName()).who(), LoadError);
+  EXPECT_THROW((void)SessionRequest(sessionName("requests")).who(), LoadError);
   EXPECT_THROW(SessionRequest("a/b"), LoadError);
   RequestServerOptions options;
-  options.session = sessionName();
+  options.session = sessionName("requests");
   const RequestServer server(options);
   EXPECT_THROW(RequestServer second(options), LoadError);
   EXPECT_NE(SessionRequest(options.session).who().words.find("no run"), std::string::npos);
@@ -549,7 +542,7 @@ TEST(SessionRequest, WhereNobodyAnswersThatIsSaid) {
 TEST(SessionRequest, AWishForARecordingThatIsNotGrantedSaysWhy) {
   const test::TemporaryFolder folder;
   RequestServerOptions options;
-  options.session = sessionName();
+  options.session = sessionName("requests");
   options.rights = RequestRights::Look;
   const std::string file = folder.path() / "run.mcap";
   const SessionRecordingOptions wish{options.session, "", file, "", nullptr, {}};
@@ -568,7 +561,7 @@ TEST(SessionRequest, AWishForARecordingThatIsNotGrantedSaysWhy) {
 /// Two clients of a session's request socket.
 class LocalRequestsTest : public testing::Test {
  protected:
-  std::string session_ = sessionName();
+  std::string session_ = sessionName("requests");
   std::unique_ptr<ServerChannel> server_ = makeLocalServer(session_);
 };
 
@@ -642,7 +635,7 @@ TEST_F(LocalRequestsTest, WhoAsksWaitsForNoServerThatDoesNotRead) {
 TEST(SessionRequest, AnotherUserOfTheMachineIsRefused) {
   if (getuid() != 0) GTEST_SKIP() << "only root can become another user";
   RequestServerOptions options;
-  options.session = sessionName();
+  options.session = sessionName("requests");
   const RequestServer server(options);
   const pid_t child = fork();
   if (child == 0) {  // the child becomes another user, without the server's thread
@@ -666,7 +659,7 @@ TEST(SessionRequest, AnotherUserOfTheMachineIsRefused) {
 
 TEST(SessionRequest, OverANetworkTheSameIsAnswered) {
   RequestServerOptions options;
-  options.session = sessionName();
+  options.session = sessionName("requests");
   options.network = "lo";
   try {
     const RequestServer server(options);

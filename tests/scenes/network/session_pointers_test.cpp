@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pointers of several processes in one session.
 #include "vps_scenes/network/session_pointers.h"
+#include "scenes/session_name.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -19,10 +20,6 @@
 namespace vps::scenes {
 namespace {
 
-std::string sessionName() {
-  return "pointers-" + std::to_string(getpid());
-}
-
 /// Waits until a pointer changes, at most two seconds.
 std::vector<SessionPointer> wait(SessionPointers& of) {
   for (int i = 0; i < 200; ++i) {
@@ -34,7 +31,7 @@ std::vector<SessionPointer> wait(SessionPointers& of) {
 }
 
 TEST(SessionPointers, APointerIsSeenByTheOthersUntilItIsTakenBack) {
-  SessionPointers a(sessionName()), b(sessionName());
+  SessionPointers a(sessionName("pointers")), b(sessionName("pointers"));
   a.point(3, Vec3(0.1, 0.2, 0.3));
   const std::vector<SessionPointer> seen = wait(b);
   ASSERT_EQ(seen.size(), 1U);
@@ -49,7 +46,7 @@ TEST(SessionPointers, APointerIsSeenByTheOthersUntilItIsTakenBack) {
 }
 
 TEST(SessionPointers, TwoWhoPointHaveDifferentNumbersAndALateOneSeesBoth) {
-  SessionPointers a(sessionName()), b(sessionName());
+  SessionPointers a(sessionName("pointers")), b(sessionName("pointers"));
   a.point(1, Vec3(1, 0, 0));
   b.point(1, Vec3(2, 0, 0));
   for (int i = 0; i < 200; ++i) {  // more messages than a ring holds
@@ -57,7 +54,7 @@ TEST(SessionPointers, TwoWhoPointHaveDifferentNumbersAndALateOneSeesBoth) {
     b.take();
   }
   a.point(2, {});
-  SessionPointers late(sessionName());
+  SessionPointers late(sessionName("pointers"));
   std::vector<int> who;
   for (int i = 0; i < 100 && who.size() < 2; ++i) {
     a.take();  // repeats its own pointers
@@ -71,7 +68,7 @@ TEST(SessionPointers, TwoWhoPointHaveDifferentNumbersAndALateOneSeesBoth) {
 }
 
 TEST(SessionPointers, APointerGoesWithAProcessThatIsKilled) {
-  const std::string session = sessionName();
+  const std::string session = sessionName("pointers");
   const pid_t pointing = fork();
   if (pointing == 0) {
     SessionPointers mine(session);
@@ -98,15 +95,15 @@ TEST(SessionPointers, APointerGoesWithAProcessThatIsKilled) {
 TEST(SessionPointers, MoreThanTheSlotsAreNotSeenAndHarmNobody) {
   std::vector<std::unique_ptr<SessionPointers>> many;
   for (int i = 0; i <= SessionPointers::kMostPointing; ++i) {
-    many.push_back(std::make_unique<SessionPointers>(sessionName()));
+    many.push_back(std::make_unique<SessionPointers>(sessionName("pointers")));
     many.back()->point(1, Vec3(i, 0, 0));
   }
-  SessionPointers watcher(sessionName());
+  SessionPointers watcher(sessionName("pointers"));
   EXPECT_EQ(wait(watcher).size(), static_cast<std::size_t>(SessionPointers::kMostPointing));
 }
 
 TEST(SessionPointers, WhatIsNoPersonOrNoPlaceIsNotPassedOn) {
-  SessionPointers a(sessionName()), b(sessionName());
+  SessionPointers a(sessionName("pointers")), b(sessionName("pointers"));
   a.point(0, Vec3(1, 1, 1));
   a.point(SessionPointers::kMostPersons + 1, Vec3(1, 1, 1));
   a.point(1, Vec3(0, 0, std::numeric_limits<double>::quiet_NaN()));
@@ -123,8 +120,8 @@ class NetworkPointers : public testing::Test {
  protected:
   void SetUp() override {
     try {
-      a_ = std::make_unique<SessionPointers>(sessionName(), "lo");
-      b_ = std::make_unique<SessionPointers>(sessionName(), "lo");
+      a_ = std::make_unique<SessionPointers>(sessionName("pointers"), "lo");
+      b_ = std::make_unique<SessionPointers>(sessionName("pointers"), "lo");
     } catch (const LoadError& error) {
       if (std::string(error.what()).find("this build has no network") == std::string::npos) throw;
       GTEST_SKIP() << "this build has no network";

@@ -12,19 +12,12 @@
 #include <filesystem>
 #include <functional>
 
+#include "scenes/session_name.h"
 #include "vps/errors.h"
 
 namespace vps::scenes {
 namespace {
 
-/// A session name that is unique for each test and process.
-std::string session() {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  return std::string("test-")
-      .append(std::to_string(getpid()))
-      .append("-")
-      .append(std::to_string(std::hash<std::string>{}(info->name()) % 100000));
-}
 std::filesystem::path fileOf(const std::string& name) {
   return "/dev/shm/bullet-vps." + std::to_string(getuid()) + "." + name;
 }
@@ -69,7 +62,7 @@ class Sleeper {
 };
 
 TEST(SharedRegion, ItsUserAloneCanOpenItAndItsNameGoesWithIt) {
-  const std::string name = session();
+  const std::string name = sessionName("test");
   {
     const SharedRegion region = SharedRegion::create(name, 4096);
     struct stat status {};
@@ -85,7 +78,7 @@ TEST(SharedRegion, ItsUserAloneCanOpenItAndItsNameGoesWithIt) {
 }
 
 TEST(SharedRegion, OneThatOthersCouldHaveWrittenToIsRefused) {
-  const std::string name = session();
+  const std::string name = sessionName("test");
   const SharedRegion region = SharedRegion::create(name, 4096);
   ASSERT_EQ(chmod(fileOf(name).c_str(), 0666), 0);
   EXPECT_NE(refusal([&] { SharedRegion::open(name, true); }).find("accessible to other users"),
@@ -93,7 +86,7 @@ TEST(SharedRegion, OneThatOthersCouldHaveWrittenToIsRefused) {
 }
 
 TEST(SharedRegion, ASecondOwnerIsRefusedWhileTheFirstLives) {
-  const std::string name = session();
+  const std::string name = sessionName("test");
   const Sleeper owner([&] { new SharedRegion(SharedRegion::create(name, 4096)); });
   EXPECT_NE(refusal([&] { SharedRegion::create(name, 4096); }).find("another vps render"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(fileOf(name)));
@@ -103,7 +96,7 @@ TEST(SharedRegion, ASecondOwnerIsRefusedWhileTheFirstLives) {
 }
 
 TEST(SharedRegion, WhatAKilledOwnerLeavesIsReplacedByANewEmptyOne) {
-  const std::string name = session();
+  const std::string name = sessionName("test");
   Sleeper owner([&] {
     auto* region = new SharedRegion(SharedRegion::create(name, 4096));
     region->memory()[0] = std::byte{1};
@@ -119,7 +112,7 @@ TEST(SharedRegion, WhatAKilledOwnerLeavesIsReplacedByANewEmptyOne) {
 }
 
 TEST(SharedRegion, WhatAKilledOwnerLeavesIsRemovedByTheNextSessionOfAnyName) {
-  const std::string name = session();
+  const std::string name = sessionName("test");
   Sleeper owner([&] { new SharedRegion(SharedRegion::create(name, 4096)); });
   owner.killNow();
   EXPECT_TRUE(std::filesystem::exists(fileOf(name)));
@@ -128,7 +121,7 @@ TEST(SharedRegion, WhatAKilledOwnerLeavesIsRemovedByTheNextSessionOfAnyName) {
 }
 
 TEST(SharedRegion, ARoleBelongsToOneProcessUntilThatDies) {
-  const std::string name = session();
+  const std::string name = sessionName("test");
   const SharedRegion region = SharedRegion::create(name, 4096);
   EXPECT_FALSE(region.isTaken(NodeRole::Device));
   Sleeper device([&] {

@@ -9,6 +9,7 @@
 
 #include "motion/motion_search.h"
 #include "scenes/assemblies_to_plan.h"
+#include "scenes/drawn_part.h"
 #include "support/lathe.h"
 #include "support/random_draw.h"
 #include "vps_scenes/fits/check.h"
@@ -18,9 +19,6 @@ namespace {
 
 constexpr double kMetre = 1e-6, kRadian = 1e-4;  // guaranteed accuracy of the play
 
-DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pose()) {
-  return {name, mesh, X_WP, {}, false};
-}
 CheckedPart playOf(const std::string& name, const std::vector<DrawnPart>& parts) {
   for (const CheckedPart& found : checkAssembly("test", parts).parts)
     if (found.name == name) return found;

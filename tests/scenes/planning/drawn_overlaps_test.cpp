@@ -15,12 +15,6 @@
 namespace vps::scenes {
 namespace {
 
-Mesh headed(double shank_m, double length_m, double head_m, double height_m) {
-  return test::lathe(
-      {{0, -length_m}, {shank_m, -length_m}, {shank_m, 0}, {head_m, 0}, {head_m, height_m}, {0, height_m}},
-      64);
-}
-
 const ScenePart& partOf(const Scene& scene, const std::string& name) {
   return *std::ranges::find(scene.parts, name, [](const ScenePart& part) { return part.part.name; });
 }

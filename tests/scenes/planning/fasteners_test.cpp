@@ -26,13 +26,6 @@ Mesh plainNut(double hole_m, double corner_m, double height_m) {
   });
 }
 
-/// A screw with a round head; its shank points downwards from z = 0.
-Mesh headed(double shank_m, double length_m, double head_m, double height_m) {
-  return test::lathe(
-      {{0, -length_m}, {shank_m, -length_m}, {shank_m, 0}, {head_m, 0}, {head_m, height_m}, {0, height_m}},
-      64);
-}
-
 /// The description of each part; "" if it is not a fastener.
 std::map<std::string, std::string> wordsOf(const std::vector<DrawnPart>& parts) {
   std::map<std::string, std::string> out;

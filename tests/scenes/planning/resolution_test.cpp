@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Voxel and spacing from the sizes of parts and of the faces they fit; memory estimated before models are
 // built.
+#include "support/units.h"
 #include "vps_scenes/planning/fidelity_choice.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +21,6 @@
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 /// A cube on a plate, in a scene that states no resolution.
 Scene cubeOnPlate(double cube_m) {

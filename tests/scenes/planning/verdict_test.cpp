@@ -9,6 +9,7 @@
 #include "scenes/scene_part.h"
 #include "step/way_check.h"
 #include "support/lathe.h"
+#include "support/units.h"
 #include "vps/errors.h"
 #include "vps/mesh.h"
 #include "vps_scenes/planning/plan.h"
@@ -17,8 +18,6 @@
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 /// The parts; the last one is moved straight down to its target. The low rates keep a run below a few
 /// seconds.
@@ -41,10 +40,10 @@ Scene sceneOf(std::vector<ScenePart> parts, double from_m) {
 }
 
 constexpr int kFlats = 96;
-constexpr double kRadius_m = 4 * kMm, kBore_m = 4.05 * kMm, kDepth_m = 10 * kMm, kChamfer_m = 0.5 * kMm;
+constexpr double kPeg_m = 4 * kMm, kBore_m = 4.05 * kMm, kDepth_m = 10 * kMm, kChamfer_m = 0.5 * kMm;
 
 /// A cup of 20 mm height from z = -14 mm, with a bore of 10 mm that is open at the top.
-Mesh cup() {
+Mesh chamferedCup() {
   return test::lathe({{0, -14 * kMm},
                       {9 * kMm, -14 * kMm},
                       {9 * kMm, 0},
@@ -58,15 +57,15 @@ Mesh cup() {
 /// A peg whose lower end is at z = 0.
 Mesh peg(double length_m, double longer_m = 0) {
   return test::lathe({{0, -longer_m},
-                      {kRadius_m - kChamfer_m, -longer_m},
-                      {kRadius_m, kChamfer_m},
-                      {kRadius_m, length_m},
+                      {kPeg_m - kChamfer_m, -longer_m},
+                      {kPeg_m, kChamfer_m},
+                      {kPeg_m, length_m},
                       {0, length_m}},
                      kFlats);
 }
 
 Scene pegInCup(double longer_m = 0) {
-  return sceneOf({scenePart("cup", cup(), Vec3::Zero(), true),
+  return sceneOf({scenePart("cup", chamferedCup(), Vec3::Zero(), true),
                   scenePart("peg", peg(15 * kMm, longer_m), {0, 0, -kDepth_m}, false)},
                  11 * kMm);
 }
@@ -125,8 +124,8 @@ TEST(Verdict, AMeshIsDoubtedWithoutAFitOnlyWhereItsErrorReachesTheOtherPart) {
   EXPECT_NE(doubt.find("the mesh of 'wall' differs by up to"), std::string::npos) << doubt;
 }
 
-// Released next to the cup, the peg falls 20 m in two seconds; the reported error is the one at the moment
-// when the hand gave up.
+// Released next to the cup, the peg falls 20 m in two seconds; the reported error is the one at the
+// moment when the hand gave up.
 TEST(Verdict, AStepThatTheHandGaveUpHasTheErrorOfThatMoment) {
   Scene scene = pegInCup();
   scene.steps[0].X_WP_start.p.x() += 30 * kMm;
@@ -263,7 +262,8 @@ TEST(Verdict, LaterStepsSayThatTheyStandOnAPartThatDidNotArrive) {
   EXPECT_EQ(told, (std::vector<std::size_t>{1, 2}));
 }
 
-/// A collar with the cup's bore is placed on the cup by sight; then the peg goes through both.
+/// A collar with the cup's bore is placed on the cup by sight; then the peg goes through
+/// both.
 Scene pegThroughCollar() {
   Scene scene = pegInCup();
   scene.parts.insert(scene.parts.begin() + 1, scenePart("collar", makeTube(9 * kMm, kBore_m, 5 * kMm, kFlats),
@@ -339,7 +339,7 @@ TEST(Verdict, APartThatNobodyHoldsIsRefusedByName) {
 
 TEST(SurfaceError, ATurnOfARoundPartAboutItsAxisIsNone) {
   const Solid solid(peg(15 * kMm));
-  const double chord_m = kRadius_m * (1 - std::cos(std::numbers::pi / kFlats));
+  const double chord_m = kPeg_m * (1 - std::cos(std::numbers::pi / kFlats));
   const Pose turned(rotationFromVector({0, 0, 0.7}), Vec3::Zero());
   EXPECT_LE(surfaceError_m(solid, turned), chord_m);
   // Along its axis every point of the end faces moves by the same distance; the walls move within themselves.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Disassembly runs whose answer is known by construction.
+#include "support/units.h"
 #include "vps_scenes/run/derived_scenes.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +16,6 @@
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 /// A plate that covers the peg's hole in the cup and is mounted from the side.
 SceneStep lidStep(Scene& scene) {

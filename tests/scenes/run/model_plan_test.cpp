@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_scenes/scene/model_plan.h"
+#include "support/units.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +17,6 @@
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 /// A pin that is set down on a plate of 40 mm; a shelf 100 mm away, which no part approaches; a label that no
 /// step moves; a copy of the pin for the second step. The low rates keep a run below a second.

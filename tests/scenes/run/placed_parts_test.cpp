@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which parts are modelled again when a part leaves the region of its step.
 #include "world/placed_parts.h"
+#include "support/units.h"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +13,6 @@
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 /// Two plates 200 mm apart, each modelled where a pin of its own is set down on it.
 Scene pinsOnTwoPlates() {

@@ -14,7 +14,7 @@
 namespace vps::scenes {
 namespace {
 
-constexpr int kFlats = 192;
+constexpr int kFitFlats = 192;
 constexpr double kShaft_m = 5e-3, kHole_m = 5.025e-3, kOuter_m = 10e-3;
 constexpr double kClearance_m = 2 * (kHole_m - kShaft_m);
 
@@ -27,11 +27,11 @@ DrawnPart drawn(const std::string& name, const Mesh& mesh, const Vec3& p_WP) {
 }
 
 Mesh ring(double length_m) {
-  return test::lathe({{kHole_m, 0}, {kOuter_m, 0}, {kOuter_m, length_m}, {kHole_m, length_m}}, kFlats);
+  return test::lathe({{kHole_m, 0}, {kOuter_m, 0}, {kOuter_m, length_m}, {kHole_m, length_m}}, kFitFlats);
 }
 
 DrawnPart shaft() {
-  return drawn("shaft", test::lathe({{0, 0}, {kShaft_m, 0}, {kShaft_m, 60e-3}, {0, 60e-3}}, kFlats),
+  return drawn("shaft", test::lathe({{0, 0}, {kShaft_m, 0}, {kShaft_m, 60e-3}, {0, 60e-3}}, kFitFlats),
                Vec3::Zero());
 }
 
@@ -65,7 +65,7 @@ TEST(LeanInFits, APartWithoutAFitHasNoLean) {
 }
 
 Mesh ringOf(double hole_m, double outer_m, double length_m) {
-  return test::lathe({{hole_m, 0}, {outer_m, 0}, {outer_m, length_m}, {hole_m, length_m}}, kFlats);
+  return test::lathe({{hole_m, 0}, {outer_m, 0}, {outer_m, length_m}, {hole_m, length_m}}, kFitFlats);
 }
 
 /// A part that lies along x, starting at its origin.
@@ -81,10 +81,10 @@ Scene collarOnAxle() {
   scene.file = scene.name = "axle";
   scene.parts = {
       lying("wall", ringOf(8.05e-3, 30e-3, 20e-3), 0, true),
-      lying(
-          "axle",
-          test::lathe({{0, -6e-3}, {20e-3, -6e-3}, {20e-3, 0}, {8e-3, 0}, {8e-3, 45e-3}, {0, 45e-3}}, kFlats),
-          0, false),
+      lying("axle",
+            test::lathe({{0, -6e-3}, {20e-3, -6e-3}, {20e-3, 0}, {8e-3, 0}, {8e-3, 45e-3}, {0, 45e-3}},
+                        kFitFlats),
+            0, false),
       lying("collar", ringOf(8.05e-3, 15e-3, 10e-3), 20e-3, false)};
   for (const std::size_t part : {1u, 2u}) {
     SceneStep step;

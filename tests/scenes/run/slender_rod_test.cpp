@@ -13,14 +13,15 @@
 namespace vps::scenes {
 namespace {
 
-constexpr int kFlats = 48;
+constexpr int kRodFlats = 48;
 constexpr double kRadius_m = 3e-3, kBore_m = 3.03e-3;  // 30 um on each side, a tenth of the error of the aim
 constexpr double kPlate_m = 8e-3;
 constexpr double kBelow_m = 4e-3;  // distance of the rod's end below the last plate, at the target
 
 /// A plate from z - 8 mm to z, with a hole without a chamfer.
 ScenePart plate(const std::string& name, double z_m) {
-  const Mesh ring = test::lathe({{kBore_m, -kPlate_m}, {15e-3, -kPlate_m}, {15e-3, 0}, {kBore_m, 0}}, kFlats);
+  const Mesh ring =
+      test::lathe({{kBore_m, -kPlate_m}, {15e-3, -kPlate_m}, {15e-3, 0}, {kBore_m, 0}}, kRodFlats);
   return scenePart(name, ring, {0, 0, z_m}, true);
 }
 
@@ -32,7 +33,7 @@ Scene rodOver(double length_m, const std::vector<double>& plates_m, std::uint64_
   for (std::size_t i = 0; i < plates_m.size(); ++i)
     scene.parts.push_back(plate("plate_" + std::to_string(i), plates_m[i]));
   const double end_m = plates_m.back() - kPlate_m - kBelow_m;
-  const Mesh rod = test::lathe({{0, 0}, {kRadius_m, 0}, {kRadius_m, length_m}, {0, length_m}}, kFlats);
+  const Mesh rod = test::lathe({{0, 0}, {kRadius_m, 0}, {kRadius_m, length_m}, {0, length_m}}, kRodFlats);
   scene.parts.push_back(scenePart("rod", rod, {0, 0, end_m}, false));
   SceneStep step;
   step.part = scene.parts.size() - 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Verdict, reason and exit status for each kind of evidence: one case in each row, on both sides of each
 // limit.
+#include "support/units.h"
 #include "vps_scenes/run/verdict.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +24,6 @@ struct VerdictCase {
   std::string reason;
   int exit_status;
 };
-
-constexpr double kUm = 1e-6;
 
 std::vector<VerdictCase> cases() {
   const double most_drift_m = kRestDriftLimit_m, more_drift_m = std::nextafter(kRestDriftLimit_m, 1);

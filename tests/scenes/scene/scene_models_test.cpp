@@ -9,14 +9,13 @@
 
 #include "scenes/scene_part.h"
 #include "support/lathe.h"
+#include "support/units.h"
 #include "vps/box.h"
 #include "vps/errors.h"
 #include "vps_scenes/scene/model_options.h"
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 /// Tubes of different sizes; every third one lacks some triangles.
 Scene tubes(int count) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs of a trainee whose detour, force and time are known by construction.
 #include "vps_scenes/uses/compare.h"
+#include "support/units.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +15,6 @@
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 /// A run along a straight path of 100 mm along x, in pieces of 1 mm.
 struct Made {

@@ -13,9 +13,9 @@
 namespace vps::viewer {
 namespace {
 
-constexpr int kRate_hz = 48000;
+constexpr int kQueueRate_hz = 48000;
 constexpr std::size_t kPeriod = 64, kBlock = 48;  // samples of the card's period, and of a step of 1 ms
-constexpr double kPeriod_s = double{kPeriod} / kRate_hz, kSpare_s = 1.25e-3;
+constexpr double kPeriod_s = double{kPeriod} / kQueueRate_hz, kSpare_s = 1.25e-3;
 
 /// A card that takes a period at a time, and a thread that writes samples.
 class Simulated {
@@ -51,7 +51,7 @@ class Simulated {
       waiting_ -= std::min(waiting_, kPeriod);
     }
   }
-  QueueLevel level_{kRate_hz, kPeriod_s};
+  QueueLevel level_{kQueueRate_hz, kPeriod_s};
   double next_pull_s_, time_s_ = 0;
   bool is_playing_ = false;
   std::size_t waiting_ = 0, dropped_ = 0;
@@ -69,7 +69,7 @@ TEST(QueueLevel, APunctualThreadKeepsLittleWaitingAndHasNoGap) {
     EXPECT_LE(card.dropped(), kPeriod) << "at the start, when the card's first period was late";
     // The bound is the reserve, two periods (the card may take the first just before or after the start), and
     // a block.
-    EXPECT_LE(most, std::size_t(kSpare_s * kRate_hz) + 2 * kPeriod + kBlock);
+    EXPECT_LE(most, std::size_t(kSpare_s * kQueueRate_hz) + 2 * kPeriod + kBlock);
   }
 }
 
@@ -89,7 +89,7 @@ TEST(QueueLevel, WhatIsNotNeededIsDroppedWhereNobodyHearsIt) {
   EXPECT_EQ(quiet.gaps(), 1U);
   EXPECT_GT(quiet.dropped(), 0U);
   // The bound is the reserve with half of its growth, and the 0.25 ms that are too short to drop.
-  const auto bound = std::size_t((kSpare_s + 0.625e-3 + 0.25e-3) * kRate_hz) + kPeriod + kBlock;
+  const auto bound = std::size_t((kSpare_s + 0.625e-3 + 0.25e-3) * kQueueRate_hz) + kPeriod + kBlock;
   EXPECT_LE(quiet.waiting(), bound);
   EXPECT_LT(quiet.waiting(), loud.waiting());
 }
@@ -122,7 +122,7 @@ TEST(QueueLevel, OfABurstTheNewestAreHeard) {
   Simulated card;
   for (int i = 0; i < 1000; ++i) card.write(1e-3 * i, kBlock, 0.5F);
   card.write(0.9995, 12000, 0.5F);  // 0.25 s of samples at once
-  EXPECT_LE(card.waiting(), std::size_t(kSpare_s * kRate_hz) + 2 * kPeriod + 2 * kBlock);
+  EXPECT_LE(card.waiting(), std::size_t(kSpare_s * kQueueRate_hz) + 2 * kPeriod + 2 * kBlock);
   EXPECT_LT(card.wait_s(), 6e-3);
 }
 
@@ -131,7 +131,7 @@ TEST(QueueLevel, AMixerThatWasLateDelaysNothingForLong) {
   for (int i = 0; i < 1000; ++i) card.write(1e-3 * i, kBlock, 0.5F);
   card.stall(10e-3);
   for (int i = 1000; i < 1100; ++i) card.write(1e-3 * i, kBlock, 0.5F);
-  EXPECT_LE(card.waiting(), std::size_t(kSpare_s * kRate_hz) + 2 * kPeriod + 2 * kBlock);
+  EXPECT_LE(card.waiting(), std::size_t(kSpare_s * kQueueRate_hz) + 2 * kPeriod + 2 * kBlock);
 }
 
 TEST(QueueLevel, ACardThatTakesNothingForSecondsIsNotHeardSecondsLater) {
@@ -140,7 +140,7 @@ TEST(QueueLevel, ACardThatTakesNothingForSecondsIsNotHeardSecondsLater) {
   card.stall(5);
   for (int i = 1000; i < 6000; ++i) card.write(1e-3 * i, kBlock, 0.5F);
   constexpr double kMost_s = 10e-3 + 10e-3;  // the greatest reserve, and the greatest block
-  EXPECT_LE(card.waiting(), std::size_t(kMost_s * kRate_hz) + 2 * kPeriod + 3 * kBlock);
+  EXPECT_LE(card.waiting(), std::size_t(kMost_s * kQueueRate_hz) + 2 * kPeriod + 3 * kBlock);
 }
 
 TEST(QueueLevel, ACutHasNoStep) {

@@ -9,7 +9,7 @@
 namespace vps::viewer {
 namespace {
 
-constexpr PictureSize kSize = {800, 600};
+constexpr PictureSize kDragged = {800, 600};
 
 /// A part that the hand holds at its middle, 0.2 m in front of a camera that looks along +y.
 scenes::Snapshot held(const Vec3& p_W) {
@@ -34,9 +34,9 @@ TEST(HandDrag, TheGrabbedPointStaysUnderTheCursor) {
     drag.watch(shot);
     const Vec3 p_W(0.01, -0.02, 0.015);
     drag.grab(p_W, shot);
-    const auto before = camera().project(p_W, kSize.width, kSize.height);
-    drag.drag(camera(), {70, -40}, kSize, motion);
-    const auto after = camera().project(drag.cursorPoint(), kSize.width, kSize.height);
+    const auto before = camera().project(p_W, kDragged.width, kDragged.height);
+    drag.drag(camera(), {70, -40}, kDragged, motion);
+    const auto after = camera().project(drag.cursorPoint(), kDragged.width, kDragged.height);
     const bool is_across = motion == HandMotion::Across;
     EXPECT_NEAR(after[0], before[0] + (is_across ? 70 : 0), 1e-9);
     EXPECT_NEAR(after[1], before[1] + (is_across ? -40 : 0), 1e-9);
@@ -52,7 +52,7 @@ TEST(HandDrag, AHandleThatIsScaledMovesByLess) {
   HandDrag drag(4);
   drag.watch(shot);
   drag.grab(Vec3::Zero(), shot);
-  drag.drag(camera(), {0, -300}, kSize, HandMotion::Across);
+  drag.drag(camera(), {0, -300}, kDragged, HandMotion::Across);
   // The drag goes up by half the picture's height, at the depth of the point.
   EXPECT_NEAR(drag.wish()->read().p.z(), 0.2 * std::tan(0.25) / 4, 1e-15);
 }
@@ -63,7 +63,7 @@ TEST(HandDrag, TurnsAboutTheScreensAxesAndTheLineOfSight) {
     HandDrag drag(1);
     drag.watch(shot);
     drag.grab(Vec3::Zero(), shot);
-    drag.drag(camera(), by, kSize, motion);
+    drag.drag(camera(), by, kDragged, motion);
     EXPECT_EQ(drag.wish()->read().p.norm(), 0);
     return rotationVector(drag.wish()->read().R);
   };
@@ -81,8 +81,8 @@ TEST(HandDrag, LettingGoBringsTheHandleToThePart) {
   HandDrag drag(2);
   drag.watch(shot);
   drag.grab(Vec3::Zero(), shot);
-  drag.drag(camera(), {0, 500}, kSize, HandMotion::Across);
-  drag.drag(camera(), {100, 0}, kSize, HandMotion::Turn);
+  drag.drag(camera(), {0, 500}, kDragged, HandMotion::Across);
+  drag.drag(camera(), {100, 0}, kDragged, HandMotion::Turn);
   // A wall stopped the part after 3 mm and a small rotation.
   const Vec3 turn_rad(0, 0, 0.1);
   shot.bodies[0].X_WP = Pose(rotationFromVector(turn_rad), Vec3(0, 0, -3e-3));
@@ -92,7 +92,7 @@ TEST(HandDrag, LettingGoBringsTheHandleToThePart) {
   EXPECT_LT((drag.wish()->read().p - Vec3(0, 0, -1.5e-3)).norm(), 1e-15);
   EXPECT_LT((rotationVector(drag.wish()->read().R) - turn_rad).norm(), 1e-12);
   const Pose before = drag.wish()->read();
-  drag.drag(camera(), {50, 50}, kSize, HandMotion::Across);
+  drag.drag(camera(), {50, 50}, kDragged, HandMotion::Across);
   EXPECT_EQ(drag.wish()->read().p, before.p) << "nothing is grabbed";
 }
 

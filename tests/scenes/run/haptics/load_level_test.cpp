@@ -2,6 +2,7 @@
 // Runs in real time with physics that is artificially too slow. The added loads are several times the
 // duration of a step, and the periods are long, so that a busy machine can only add to the load.
 #include "vps_scenes/run/load_level.h"
+#include "support/units.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,6 @@
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3;
 
 /// Two pins that are set down on a plate. Physics at 250 Hz.
 Scene twoPins() {

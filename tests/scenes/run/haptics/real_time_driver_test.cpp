@@ -13,7 +13,7 @@
 namespace vps::scenes {
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
+constexpr double kDriverPeriod_s = 1e-3;
 
 /// A device that oscillates by itself; only the loop's thread uses it.
 class Swing final : public device::Device {
@@ -82,9 +82,9 @@ class RepeatedSamples final : public Hand, public device::Device {
 
 device::LoopSettings settings() {
   device::LoopSettings s;
-  s.period_s = kPeriod_s;
+  s.period_s = kDriverPeriod_s;
   s.extrapolates_part = true;
-  s.physics_limit_s = physicsLimit_s(kPeriod_s);
+  s.physics_limit_s = physicsLimit_s(kDriverPeriod_s);
   return s;
 }
 

@@ -9,13 +9,12 @@
 #include "judge/overlap_record.h"
 #include "scenes/scene_part.h"
 #include "simulation/body_overlaps.h"
+#include "support/units.h"
 #include "vps_scenes/run/simulate.h"
 #include "world/step_rows.h"
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3, kUm = 1e-6;
 
 MovingBody movingBody(const Mesh& mesh, bool is_fixed) {
   return {bounds(mesh), Vec3::Zero(), is_fixed,

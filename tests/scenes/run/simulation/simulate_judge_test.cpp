@@ -7,13 +7,12 @@
 
 #include "scenes/scene_part.h"
 #include "simulation/body_overlaps.h"
+#include "support/units.h"
 #include "vps/errors.h"
 #include "vps_scenes/run/simulate.h"
 
 namespace vps::scenes {
 namespace {
-
-constexpr double kMm = 1e-3, kUm = 1e-6;
 
 Mesh blockMesh() {
   return makeBox({10 * kMm, 8 * kMm, 6 * kMm});

@@ -9,12 +9,13 @@
 #include "models/scene_models.h"
 #include "scenes/scene_part.h"
 #include "simulation/simulation.h"
+#include "support/units.h"
 #include "vps_scenes/run/simulate.h"
 
 namespace vps::scenes {
 namespace {
 
-constexpr double kMm = 1e-3, kRpm = std::numbers::pi / 30;
+constexpr double kRpm = std::numbers::pi / 30;
 
 /// A shaft in a bore, or alone, without gravity and friction. A bore of 5.03 mm leaves clearance at any
 /// angle; in a bore of 5.0064 mm and 64 sides, the corners of the shaft pass the sides at 0.4 um.
