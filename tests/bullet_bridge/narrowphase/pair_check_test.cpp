@@ -97,8 +97,9 @@ TEST(PairCheck, MissesNothingInAStepThatStaysFree) {
   }
 }
 
-// A motion is not checked again if it ends within a twentieth of the rest gap of a clear one. A motion that
-// ends farther away is checked.
+// If a motion was found to be free of contact, a later motion from the same start is not checked if its end
+// pose is within a twentieth of the rest gap (FeatureMotion::kRest_m) of the first motion's end pose. A
+// motion that ends farther away is checked.
 TEST(PairCheck, AClearWayHoldsForWaysThatEndBesideIt) {
   if (!test::kIsDouble) GTEST_SKIP() << "poses are coarser than a nanometre";
   constexpr double kGap_m = 100e-6, kMissed_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;

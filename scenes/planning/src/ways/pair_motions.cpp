@@ -55,8 +55,9 @@ namespace {
 
 /// Work limit for one motion of one pair, about ten seconds. A bolt of 227,717 facets needs 2 million units.
 constexpr std::uint64_t kMostWork = 10'000'000;
-/// Work limit for the test whether a motion needs an allowance. A motion that needs an allowance is stopped
-/// early; other motions take long if faces slide along each other.
+/// Work limit for the test whether a motion needs more overlap of the parts than drawn
+/// (PairMotions::allowanceOf()). The search of a motion that needs more overlap ends early, because the
+/// motion is stopped; the search of another motion takes long if faces slide along each other.
 constexpr std::uint64_t kMostExactWork = 300'000;
 constexpr double kFall_m = 1e-3;  // assumed: a part that sinks by less than kFall_m counts as carried
 
