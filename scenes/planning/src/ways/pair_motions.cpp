@@ -38,8 +38,9 @@ ContactProbes::ContactProbes(const PlacedSurface& a, const PlacedSurface& b, dou
 }
 
 bool ContactProbes::areStopped(const Vec3& d_W) const {
-  constexpr double kWays[] = {8, 80};  // distances in units of the allowed depth: far enough to exceed the
-                                       // allowed depth at a slope of an eighth
+  // Distances of the motion in units of the allowed depth. A point at the other surface is then deeper than
+  // twice the allowed depth if the motion's slope against that surface is above 1/4, or above 1/40.
+  constexpr double kWays[] = {8, 80};
   return std::ranges::any_of(kWays, [&](double way) {
     return std::ranges::any_of(sides_, [&](const Side& side) {
       const Pose X_OW = side.other->X_WP.inverse();
