@@ -132,8 +132,8 @@ class Impulses {
   std::vector<btManifoldPoint> points_;
 };
 
-// Writes the gaps of the rounds as distances, since Bullet's solvers know no rest gap and predict the end of
-// the step to first order only.
+// Writes the gaps of the solved contacts into their manifold points as distances, since Bullet's solvers know
+// no rest gap and predict the end of the step to first order only.
 void writeDistances(const RelativeMotion& motion, std::span<const RigidContact> contacts) {
   for (const RigidContact& c : contacts) {
     if (bounces(*c.point)) continue;

@@ -17,9 +17,9 @@
 // The term mu |v_t| is De Saxce's. Without this term a sliding contact would separate at the speed mu |v_t|.
 // The term makes the matrix of Newton's method unsymmetric, and the equation is not the condition of a
 // minimum. A Newton step, or a fraction of it, is therefore accepted if it reduces the residual of the
-// equation, a momentum. If no fraction reduces the residual, a step of the convex problem with the present
-// value of the slip term is taken instead; its exact line search makes progress from any point. A round that
-// still does not converge is repeated with more compliance.
+// equation, a momentum, which is called the missing momentum. If no fraction reduces the residual, a step of
+// the convex problem with the present value of the slip term is taken instead; its exact line search makes
+// progress from any point. A round that still does not converge is repeated with more compliance.
 //
 // If the slip term were taken from the previous round, the rounds would converge linearly only: of 47
 // problems of ten brackets that lie on each other, 30 were solved in 60 steps, instead of 46.
@@ -53,7 +53,7 @@ class ContactNewton {
   /// A contact. Impulses act on body 0, in W.
   struct Point {
     Vec3 r, n;        ///< position relative to the patch's centre; normal
-    double mu;        ///< friction
+    double mu;        ///< coefficient of friction
     double W;         ///< inverse mass
     double softness;  ///< s
     double target;    ///< t [m/s], without the term of slip
