@@ -128,7 +128,8 @@ TEST(PairCheck, AClearWayHoldsFromItsStartOnly) {
   EXPECT_FALSE(scene.missedAt(X_end).empty());
 }
 
-// A motion that a later round found clear was not checked for gaps that were small at the start.
+// A motion that a later check of the step found free of contact was not checked for gaps that were small at
+// the start.
 TEST(PairCheck, AClearWayOfALaterRoundIsLookedAtForSmallGaps) {
   if (!test::kIsDouble) GTEST_SKIP() << "poses are coarser than a nanometre";
   BoxAbovePlate scene(rotationFromVector({0.4, 0.3, 0}), 15e-9);
@@ -176,7 +177,7 @@ TEST(PairCheck, ReportsTheExactDepthOfWhatGoesIn) {
   }
 }
 
-// The free share ends shortly before the corner meets the face.
+// The share of the step that is free of contact ends shortly before the corner touches the face.
 TEST(PairCheck, TheFreeShareEndsWhereACornerMeetsTheFace) {
   test::Random random(2);
   for (int i = 0; i < 40; ++i) {
@@ -238,7 +239,7 @@ TEST(PairCheck, ReportsWhatGoesInBetweenThePointsOfCurvedFaces) {
   }
 }
 
-// The ball turns to another side in each round, until the manifolds are full. The overlap must still be
+// The ball turns to another side before each check, until the manifolds are full. The overlap must still be
 // reported as missed.
 TEST(PairCheck, SaysWhatItMissesAlsoWithoutRoom) {
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;
