@@ -237,10 +237,11 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
   }
   if (isSlender() && before == OperatorStrategy::SpiralSearch && sequence().strategy() != before)
     belief_.across_m = tip_felt_m_ - across(sag_m_);  // the lead of the hand in the spiral ends
-  const bool is_last = sequence().strategy() == OperatorStrategy::PressHome ||
-                       sequence().strategy() == OperatorStrategy::PlaceBySight;
-  if (is_last != (phase_ == OperatorPhase::Press))
-    enter(is_last ? OperatorPhase::Press : OperatorPhase::Insert, view.time_s);
+  // A screw on its thread is not pressed: it stays in phase Insert.
+  const bool is_pressing =
+      sequence().isAtLastStrategy() && sequence().strategy() != OperatorStrategy::ScrewOn;
+  if (is_pressing != (phase_ == OperatorPhase::Press))
+    enter(is_pressing ? OperatorPhase::Press : OperatorPhase::Insert, view.time_s);
   const Move& move = sequence().present().move();
   if (move.looks) correctAtTheHole(dt_s);
   if (!move.looks) seen_for_s_ = 0;
