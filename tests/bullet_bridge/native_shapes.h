@@ -24,7 +24,7 @@ inline btVector3 at(double x, double y, double z) {
 struct Ground {
   btCollisionShape* shape = nullptr;
   Pose X_WB;
-  double tolerance_m = 0;  ///< of the height, in addition to rounding
+  double tolerance_m = 0;  ///< error of the height, in addition to rounding
   std::vector<std::shared_ptr<void>> kept;
 
   template <typename T, typename... A>

@@ -279,8 +279,7 @@ TEST(VirtualOperator, PlacesWhatNothingGuidesOnlyAsWellAsItSees) {
 // The hand pushes the part past its target, and friction holds the part on the way back. The delayed pictures
 // of the moving part once counted as pictures of the part at its target, and the hand released it 3.6 mm off.
 TEST(VirtualOperator, PushesOnWhereFrictionHoldsWhatNothingStops) {
-  constexpr double kBound =
-      4;  // in errors of sight; this value is assumed for a hand that works against friction
+  constexpr double kBound = 4;  // in units of see_error_m; assumed for a hand that works against friction
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     OperatorHabits habits;
     habits.seed = seed;

@@ -205,7 +205,7 @@ Screwed screwOn(ThreadWorld world, const ScrewTask& screw, double timeout_s = 60
 }
 
 constexpr ScrewTask kNut{.pitch_m = 2e-3, .handle_rad = 0.7};
-constexpr double kHeight_m = 0.5e-3;  // five errors of sight
+constexpr double kHeight_m = 0.5e-3;  // five times see_error_m
 
 TEST(Screw, TurnsBackUntilTheThreadDropsAndThenOnToTheHeightOfTheTarget) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {

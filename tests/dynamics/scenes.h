@@ -117,13 +117,14 @@ struct NutSpinResult {
 };
 NutSpinResult spinNut(const SceneSettings& settings, const NutSize& size, double rad_s, int steps);
 
-/// The least friction that holds the nut, by theory: tan(lead angle at the pitch diameter) cos(30 degrees).
+/// The smallest friction coefficient that holds the nut, by theory: tan(lead angle at the pitch diameter)
+/// cos(30 degrees).
 double selfLockTheory(const NutSize& size);
 
 /// Rotation [rad] of a nut with this friction in duration_s, after 0.2 s in which it settles on the rod.
 double turnWithFriction_rad(const SceneSettings& settings, const NutSize& size, double mu, double duration_s);
 
-/// The friction that just holds the nut, by bisection to `resolution`.
+/// The smallest friction coefficient that holds the nut, found by bisection to `resolution`.
 double selfLockFriction(const SceneSettings& settings, const NutSize& size, double resolution = 1e-3);
 
 // -- Two involute gears of module 2 on hinges, 20 teeth driving 30 against a brake.

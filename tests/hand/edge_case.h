@@ -29,8 +29,8 @@ std::string rowName(const EdgeCase& edge);
 std::string caseName(const EdgeCase& edge);
 scenes::Scene edgeScene(const EdgeCase& edge);
 
-/// The verdict Not shown is allowed for clearances nearer to zero than this: 2 um, and the chord of one mesh
-/// across its diameter.
+/// The verdict "not shown" is allowed if the clearance is nearer to zero than this: 2 um, and the chord of
+/// one mesh across its diameter.
 double edgeBand_m(const EdgeCase& edge);
 
 enum class EdgeOutcome {

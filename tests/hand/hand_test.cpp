@@ -51,7 +51,7 @@ TEST(Hand, ASharpRectangularHoleIsSearchedAndFound) {
     EXPECT_TRUE(step.completed) << "seed " << seed << ": " << step.failure_reason;
     searched += uses(step, "tilt_in") || uses(step, "spiral_search");
   }
-  // The error of sight is greater than the clearance of 50 um on each side.
+  // The operator's see_error_m (0.1 mm) is greater than the clearance of 50 um on each side.
   EXPECT_GT(searched, 0);
 }
 
@@ -67,7 +67,7 @@ TEST(TurnSearch, FindsAHoleThatIsTurnedFartherThanSightSays) {
 
 scenes::StepResult looseStep(const PegFit& fit, std::uint64_t seed) {
   scenes::Scene scene = pegScene("peg", holeMesh(fit), pegMesh(fit), fit.depth_m, seed);
-  // Ten errors of sight, a tolerance for which the hand alone is good enough.
+  // Ten times see_error_m, a tolerance for which the hand alone is good enough.
   scene.steps[0].tolerance_m = 1e-3;
   scene.steps[0].tolerance_rad = 0.1;
   return stepOf(std::move(scene));

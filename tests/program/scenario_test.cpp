@@ -255,7 +255,7 @@ TEST_F(Scenario, APartThatDriftsAfterReleaseIsNotShown) {
   EXPECT_NEAR(step["final_error_m"].get<double>(), kFall_m, 10e-6);
   EXPECT_GT(step["rest_drift_m"].get<double>(), kFall_m / 2);
   EXPECT_LT(step["rest_drift_m"].get<double>(),
-            kFall_m + 0.5e-3);  // the peg is released too high by five errors of sight
+            kFall_m + 0.5e-3);  // the peg is released too high by five times see_error_m
   EXPECT_NE(ran.out.find(": nothing holds it there"), std::string::npos) << ran.out;
 }
 

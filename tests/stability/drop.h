@@ -57,7 +57,7 @@ struct Dropped {
 Dropped drop(Mode mode, const Drop& what);
 
 /// Allowed overlap of the block. Constraint contact: a corner turns by up to v dt within a step and leaves
-/// the tangent by (v dt)^2 / 2 r, with r the least half side; plus a micrometre. Penalty contact: in the
+/// the tangent by (v dt)^2 / 2 r, with r half the shortest side; plus a micrometre. Penalty contact: in the
 /// worst case one corner, with a quarter of a point's area, absorbs the energy E of the fall: d^2 = 2 E / (k
 /// A).
 double allowedDepth_m(Mode mode, const Drop& what, const Dropped& dropped);

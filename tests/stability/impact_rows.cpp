@@ -40,7 +40,7 @@ Judgement shoot(const Run& run, First first, double wall_m, double speed_m_s) {
   const Watched watched = watch(world, {wall, block}, watching);
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
-  // The centre of the block is never nearer to the wall than half of its least side, with a tolerance of a
+  // The centre of the block is never nearer to the wall than half of its shortest side, with a tolerance of a
   // tenth.
   judgement.atMost("centre past the wall's face by", farthest_m, -0.9 * kBlock_m.minCoeff() / 2, "m");
   judgement.atMost("energy gained", watched.gained_J, 1e-9 * watched.start_J, "J");

@@ -55,8 +55,8 @@ struct OperatorHabits {
   double touch_N = 1;         ///< resistance that counts as touching. assumed: ten times what a finger feels
   double search_N = 1.5;      ///< push while searching. assumed: light, so that the part slides
   double tilt_rad = 0.1;      ///< tilt with which a corner is inserted first. assumed
-  double search_m = 0.08e-3;  ///< pitch of the spiral. assumed: below the error of sight
-  double search_limit_m = 0.5e-3;  ///< radius of the spiral: five errors of sight
+  double search_m = 0.08e-3;  ///< pitch of the spiral. assumed: less than see_error_m
+  double search_limit_m = 0.5e-3;  ///< greatest radius of the spiral: five times see_error_m
   double turn_limit_rad = 0.11;    ///< range of the search about the axis, to each side. assumed: 6 degrees
   double press_s = 0.3;
   double rest_m_s = 1e-3;   ///< a slower hand is at rest

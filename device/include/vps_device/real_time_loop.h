@@ -62,7 +62,8 @@ class VPS_DEVICE_API RealTimeLoop {
                const RealTimeSettings& real_time = {});
   ~RealTimeLoop();
 
-  /// Starts the loop's thread. The report and settings.events tell what the system refused. Throws as
+  /// Starts the loop's thread. The report and settings.events list the requests (real-time priority, locked
+  /// memory) that the operating system refused. Throws as
   /// PeriodicThread::start() does.
   RealTimeReport start();
   /// Stops the loop's thread and sets the wrench to zero. A held part stays held, for the next start().

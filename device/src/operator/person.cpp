@@ -12,8 +12,8 @@ constexpr double kFeel_s = 0.01;    // time constant of touch. assumed: a finger
 constexpr double kSoon_s = 0.2;     // time constant of the seen distance to the target along the axis
 constexpr double kLeastGain = 0.2;  // least gain, as a share of the first gain: old pictures are forgotten
 constexpr double kGiveWay_per_s = 4;
-constexpr double kNear = 4;         // distance to the target, in errors of sight
-constexpr double kGuided = 0.25;    // share of tip_m_; deeper in its hole a slender part cannot tilt freely
+constexpr double kNear = 4;       // greatest distance that counts as near the target, in units of see_error_m
+constexpr double kGuided = 0.25;  // share of tip_m_; deeper in its hole a slender part cannot tilt freely
 constexpr double kPivots_m = 5e-3;  // depth from which a slender part in a hole turns about the hole's mouth
 constexpr double kHome_per_s = 4;   // rate of a slender part's end towards the seen hole
 
@@ -237,10 +237,11 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
   }
   if (isSlender() && before == OperatorStrategy::SpiralSearch && sequence().strategy() != before)
     belief_.across_m = tip_felt_m_ - across(sag_m_);  // the lead of the hand in the spiral ends
-  const bool is_last = sequence().strategy() == OperatorStrategy::PressHome ||
-                       sequence().strategy() == OperatorStrategy::PlaceBySight;
-  if (is_last != (phase_ == OperatorPhase::Press))
-    enter(is_last ? OperatorPhase::Press : OperatorPhase::Insert, view.time_s);
+  // A screw on its thread is not pressed: it stays in phase Insert.
+  const bool is_pressing =
+      sequence().isAtLastStrategy() && sequence().strategy() != OperatorStrategy::ScrewOn;
+  if (is_pressing != (phase_ == OperatorPhase::Press))
+    enter(is_pressing ? OperatorPhase::Press : OperatorPhase::Insert, view.time_s);
   const Move& move = sequence().present().move();
   if (move.looks) correctAtTheHole(dt_s);
   if (!move.looks) seen_for_s_ = 0;

@@ -33,9 +33,7 @@ void Sequence::start(OperatorStrategy strategy, const Feel& feel) noexcept {
 Outcome Sequence::step(const Feel& feel, double dt_s) noexcept {
   const Outcome outcome = of(strategy_).step(feel, dt_s);
   if (outcome == Outcome::GoingOn) return outcome;
-  const bool is_last = strategy_ == OperatorStrategy::PressHome || strategy_ == OperatorStrategy::ScrewOn ||
-                       strategy_ == OperatorStrategy::PlaceBySight;
-  if (is_last && outcome == Outcome::Done) return Outcome::Done;
+  if (isAtLastStrategy() && outcome == Outcome::Done) return Outcome::Done;
   if (outcome == Outcome::Unopposed)
     start(OperatorStrategy::PlaceBySight, feel);
   else

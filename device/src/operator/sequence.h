@@ -27,6 +27,11 @@ class Sequence {
   Outcome step(const Feel& feel, double dt_s) noexcept;
 
   [[nodiscard]] OperatorStrategy strategy() const noexcept { return strategy_; }
+  /// Whether the part is at its target when the strategy in use succeeds.
+  [[nodiscard]] bool isAtLastStrategy() const noexcept {
+    return strategy_ == OperatorStrategy::PressHome || strategy_ == OperatorStrategy::ScrewOn ||
+           strategy_ == OperatorStrategy::PlaceBySight;
+  }
   /// The strategy in use. Not to be called before the first begin().
   [[nodiscard]] const Strategy& present() const noexcept { return of(strategy_); }
   /// Number of retries in all searches of the task.

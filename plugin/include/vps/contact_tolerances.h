@@ -60,8 +60,8 @@ inline constexpr double kCosCurved = 0.9903;
 /// 0.8 degrees: planes at a smaller angle belong to one contact. The angle is smaller than that between
 /// neighbouring facets of a cylinder of 400 facets. Assumed; no test pins it.
 inline constexpr double kCosSamePlane = 0.9999;
-/// 45 degrees: the limit between "along" and "across" a direction.
-/// Assumed; no test pins it.
+/// 45 degrees: two directions at a smaller angle count as alike; a direction at a larger angle to a plane's
+/// normal lies more along the plane than across it. Assumed; no test pins it.
 inline constexpr double kCosAlike = 0.7;
 /// Sine of the angle between two edges below which they count as parallel and define no common plane. The
 /// value is far above rounding errors and far below the angles between segments of curved edges. Assumed; no
@@ -95,14 +95,15 @@ inline constexpr double kSamePlace_m = 1e-6;
 /// Gaps that differ by less than this are the same: the difference is worth no query and changes no contact's
 /// role [m]. Test: Replay.
 inline constexpr double kSameGap_m = 1e-7;
-/// Upper bound of the seam between parts that are mounted on each other [m].
-/// Assumed; no test pins it.
+/// Distance outside an edge of one part of a merged body at which the other parts are sought [m]. If the
+/// place is inside another part, or nearer to it than half of this distance, the edge is covered and is no
+/// edge of the body. Seams between mounted parts are narrower than this. Assumed; no test pins it.
 inline constexpr double kSeam_m = 10e-6;
 /// Overlaps below this share of the contact margin are left to the solver's push: 1 um of 20 um, far above
 /// the solver's remaining error. Test: Replay.
 inline constexpr double kToleratedShare = 0.05;
-/// An older overlap may grow in a step by this share of the tolerated overlap, because of rounding. Assumed;
-/// no test pins it.
+/// Share of the tolerated overlap by which an overlap that existed at the start of a step may grow in the
+/// step, because of rounding. Assumed; no test pins it.
 inline constexpr double kGrowthShare = 0.1;
 /// A step that still has overlaps after the last round of checks continues as long as no point is deeper than
 /// this share of the contact margin. With the growth of one step the limit is 10 um at a margin of 20 um, the
@@ -118,11 +119,15 @@ inline constexpr double kApartShare = 0.0025;
 /// features; facets of 0.2 mm on a ball of 5 mm have vertices 1 um high, which are not. The test families
 /// C_balls and G_impact need this limit. Test: C_balls.
 inline constexpr double kFacetCornerShare = 0.25;
-/// Greatest overlap of two edges that counts as a crossing, as a share of the query range and of the cutoff.
-/// At greater depth shell points lie inside the other part and carry the contact. Assumed; no test pins it.
+/// Share of the query range: greatest overlap of two edges that counts as a crossing, if the range's share
+/// exceeds the query's cutoff distance. At greater depth shell points lie inside the other part and carry the
+/// contact. Crossings deeper than the cutoff are sought only in a pair's first step, or if a contact of the
+/// last step overlaps by more than this share of the cutoff. Assumed; no test pins it.
 inline constexpr double kEdgeDepthShare = 0.25;
-/// Features that start with a gap below this share of the rest gap get a contact even if they do not
-/// approach. Test: I_flush.
+/// Share of the rest gap (FeatureMotion::kRest_m). Features that start a step with a smaller gap get a
+/// contact even if they do not approach. After kMostRetakes rounds of a check, features whose gap at the
+/// step's end is larger than this share of the smaller of rest gap and starting gap are accepted. Test:
+/// I_flush.
 inline constexpr double kHeldShare = 0.2;
 /// Error of the field's distance at sharp edges, in voxels. Measured: 0.40 at a point of an edge that lies
 /// next to another edge. Test: Replay.
@@ -152,19 +157,26 @@ inline constexpr double kSliding_m_s = 1e-4;
 
 // --- Convergence of the solver -----------------------------------------------------------------------------
 
-/// A change below this share of the greatest friction limit, or of a coupling's force, counts as converged.
-/// Assumed; no test pins it.
+/// A change below this share of the greatest friction limit, or of a coupling's force, counts as converged. A
+/// friction impulse within this share of its limit counts as being at the limit. Also the regularisation of
+/// small least-squares problems, as a share of the matrix's trace. Assumed; no test pins it.
 inline constexpr double kSettledShare = 1e-6;
 /// Allowed error of the solver, as a share of the fastest speed in the island: a micrometre on a path of a
 /// decimetre. Test: I_flush.
 inline constexpr double kSpeedErrorShare = 1e-5;
-/// A tenth, used in three tests of progress. A contact's law is solved to this share of the residual (when it
-/// was solved only to the whole residual, a nut turned by 2 %, since the error has the same sign from step to
-/// step). A line search ends at this share of the slope. A round (outer iteration) must reduce the error to
-/// this share of the last round's error, or the contacts are made stiffer; after a round that did not
-/// converge the contacts are made softer by this factor [Bertsekas 1982, ch. 2]. Test: B_mass_ratio_turns.
+/// A tenth, used in several tests of progress:
+/// - A contact's law is solved to this share of the allowed error. (When a law was solved only to the whole
+///   error, a nut turned by 2 %, since the error has the same sign from step to step.)
+/// - A line search ends where the derivative has fallen to this share of its value at the start.
+/// - A round (outer iteration) must reduce the error of the contacts' laws to this share of the last round's
+///   error; otherwise the contacts' compliance is reduced by kRoundShare. After a round that did not
+///   converge, the compliance is divided by this share [Bertsekas 1982, ch. 2].
+/// - If rounding stops Newton's method, the solution is accepted if the allowed error is more than this share
+///   of the remaining error.
+/// Test: B_mass_ratio_turns.
 inline constexpr double kAccuracyShare = 0.1;
-/// Error to which the first round (outer iteration) is solved [m/s]. Test: Replay.
+/// Upper limit of the error to which a round (outer iteration) is solved, before the factor kRoundShare: the
+/// first round is solved to 5 mm/s [m/s]. Test: Replay.
 inline constexpr double kFirstError_m_s = 1e-2;
 /// A contact's compliance in the first round (outer iteration), as a share of a free body's compliance. A
 /// stiff contact leaves little error in a round, but Newton's method then needs many steps from a distant
@@ -173,9 +185,10 @@ inline constexpr double kFirstCompliance = 0.1;
 /// A contact's least compliance, as a share of a free body's compliance. Test: Replay and B_mass_ratio_turns
 /// fail at ten times the value.
 inline constexpr double kLeastCompliance = 1e-7;
-/// Factor, from one round (outer iteration) to the next, of the contacts' compliance and of the error to
-/// which the round is solved. With a factor of 0.1, a third of the problems of a pile have a round that does
-/// not converge; with 0.8 there are too many rounds. Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
+/// Factor by which the contacts' compliance is reduced after a round (outer iteration), and ratio of the
+/// error to which a round is solved to the error of the contacts' laws after the round before. With a factor
+/// of 0.1, a third of the problems of a pile have a round that does not converge; with 0.8 there are too many
+/// rounds. Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
 inline constexpr double kRoundShare = 0.5;
 /// Contacts whose loads are equal to within this share of the face's load are left unchanged, so that a body
 /// at rest needs no new solution in each step. Test: EvenPressure.LeavesWhatIsEvenAndWhatIsHeldInOneWay, and
@@ -189,8 +202,8 @@ inline constexpr double kUnspreadShare = 1e-4;
 /// held. A joint is therefore a spring that misses its target by a millionth. Joints have no multipliers,
 /// because rows of joints often contradict each other. Assumed; no test pins it.
 inline constexpr double kRigidRatio = 1e6;
-/// Factor of stiffness by which the push that separates overlapping bodies is softer.
-/// Test: I_flush.
+/// Compliance of the push that separates overlapping bodies, as a share of the inverse mass of the contact's
+/// row. Overlaps may contradict each other, and a rigid push would have no solution. Test: I_flush.
 inline constexpr double kPushSoftness = 0.1;
 /// An approach slower than this share of the fastest approach is stopped without an impact of its own.
 /// Contacts of flush faces that rest on each other would otherwise be reflected or not depending on the sign
@@ -201,14 +214,15 @@ inline constexpr double kSlowApproachShare = 1e-2;
 // --- Budgets -----------------------------------------------------------------------------------------------
 
 /// Greatest number of rounds in which a check corrects a step, or of halvings of the step; most steps need
-/// two or three. Test: B_mass_ratio_turns.
+/// two or three. Also the limit of other short iterations: trial steps of Newton's method, and rounds that
+/// even out the pressure. Test: B_mass_ratio_turns.
 inline constexpr int kMostRounds = 8;
 /// Greatest number of times that a contact's place, or its row, is computed again; most contacts need one or
 /// two. Test: Replay.
 inline constexpr int kMostRetakes = 5;
-/// Limit of iterations that converge after a few steps where they converge at all, and number of Newton steps
-/// that are always allowed: with fewer, each step of the simulation is solved again for the contacts that its
-/// solution misses. Test: Replay.
+/// Limit of iterations that converge after a few iterations if they converge at all. Also the number of
+/// Newton steps that a solution of an island may always take: with fewer, each step of the simulation is
+/// solved again for the contacts that its solution misses. Test: Replay.
 inline constexpr int kMostIterations = 60;
 /// Greatest number of sweeps over the friction of an impact. The sweeps converge slowly where flush faces
 /// have dozens of contacts. Assumed; no test pins it.
@@ -218,8 +232,9 @@ inline constexpr int kMostPlaces = 20;
 /// Greatest number of contacts of one kind that one check adds to a pair. Six contacts hold a body; the next
 /// check adds more contacts. Test: Replay.
 inline constexpr std::size_t kMostAdded = 8;
-/// Segments of the path of one step, each as long as the range of a query: 0.5 m at a voxel of 0.25 mm.
-/// Assumed; no test pins it.
+/// Greatest number of segments into which the path of one step is divided. With the narrow phase's segments
+/// of about the query range, the path may be 0.5 m long at a voxel of 0.25 mm. The check of sharp features
+/// allows ten times this number of segments. Assumed; no test pins it.
 inline constexpr double kMostStretches = 1000;
 /// Products of rows in one impact, about 0.1 s of work. A body between two others of R times its mass takes
 /// pi sqrt(R / 2) impacts; between flush faces each impact takes about 300 products. Assumed; no test pins

@@ -96,12 +96,13 @@ class VPS_API MeshDistance {
     std::uint32_t child[kLanes] = {};  ///< a node, or a triangle and kTriangle
   };
   static constexpr std::uint32_t kTriangle = 1U << 31;
-  /// Nodes on the upper levels, of this number, divide their triangles by area, which may separate only a few
-  /// triangles at a time; nodes below divide by count, so that each of the eight children has an eighth of
-  /// the triangles, up to a difference of eight.
+  /// Number of upper levels of the tree. A node of one of these levels divides its triangles by the surface
+  /// area heuristic, which may split off only a few triangles. A node of a lower level divides its triangles
+  /// at medians, so that each of its eight children has an eighth of them, up to a difference of eight
+  /// triangles.
   static constexpr int kLevelsByArea = 20;
-  /// Greatest number of levels: below the levels by area, ten levels for the greatest number of groups of
-  /// eight triangles, 2^28, and one level whose children are triangles.
+  /// Greatest number of levels of the tree: kLevelsByArea; ten levels that divide at medians, enough for 2^28
+  /// groups of eight triangles; and one level whose children are triangles.
   static constexpr int kMostLevels = kLevelsByArea + 11;
 
   Mesh mesh_;

@@ -12,7 +12,8 @@ namespace vps {
 Fidelity fidelityPreset(std::string_view name) {
   Fidelity f;  // "normal": fits of tens of micrometres on parts of a few centimetres
   if (name == "normal") return f;
-  if (name == "fast") {  // for previews: a quarter of the points, one side
+  if (name == "fast") {  // for previews: a quarter of the points, and of each pair only the points of
+                         // the smaller part are queried
     f.voxel_m = 0.5e-3;
     f.spacing_m = 1e-3;
     f.sides = Sides::One;

@@ -28,7 +28,8 @@ void stiffestWallRow(const HapticOptions&, Table&);
 void pressRow(const HapticOptions&, Table&);
 void slideRow(const HapticOptions&, Table&);
 void freeMotionRow(const HapticOptions&, Table&);
-// The row of shipped scenes with their operator, which needs vps::scenes.
+// Row of shipped scenes that the virtual operator assembles over a connection with delay and loss.
+// This row needs the library vps::scenes.
 void injectedRow(const HapticOptions&, Table&);
 // Rows in real time.
 void tickRow(const HapticOptions&, Table&);

@@ -94,7 +94,7 @@ int wrong(bool is_tiled) {
         for (unsigned seed = 1; seed <= 4; ++seed) {
           const Landing landing = land(bodies()[k], is_tiled, speed_m_s, sideways_m_s, seed);
           // Rows are accurate to half the rest gap in a step of 1 ms (50 um/s), and a body that ends flush on
-          // the floor may lean by this amount over its length.
+          // the floor may be inclined by as much over its length.
           const double bound_m_s = 1e-3 * std::max(speed_m_s, sideways_m_s) + 50e-6;
           if (landing.sideways_m_s > bound_m_s || landing.turn_m_s > bound_m_s) {
             ++count;

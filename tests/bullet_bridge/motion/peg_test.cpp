@@ -126,7 +126,7 @@ TEST_P(PegInBore, DroppedItSeats) {
   EXPECT_NEAR(later.p.z(), -kDepth_m, 3e-6);
   // In single precision the stock solver, which starts friction from zero in each step, lets the part creep
   // by the rounding of dt g, at most 2e-5 m/s, for two seconds. Penalty contact creeps too (4.7e-6 m/s
-  // measured), since the bends of bristles do not include the rounding of a pose.
+  // measured), since the deflections of the friction bristles do not include the rounding of a pose.
   const bool creeps = GetParam().solver != SolverKind::Constraint && sizeof(btScalar) == 4;
   // In single precision a pose is rounded by up to 3.7 nm at 62 mm in each of 2000 steps, which friction does
   // not undo. Measured: 1.04 um.

@@ -46,8 +46,8 @@ TEST(Penalty, FrictionHoldsWithoutCreep) {
   world.step(1000);
   const Vec3 start = fromBt(body.getWorldTransform().getOrigin());
   world.step(10000);
-  // A bristle is a spring: nothing moves once it is bent, except by rounding, 1e-16 of a position in each
-  // step.
+  // The friction bristle of a penalty point is a spring: nothing moves once it is deflected, except by
+  // rounding, 1e-16 of a position in each step.
   EXPECT_LE((fromBt(body.getWorldTransform().getOrigin()) - start).norm(), 1e-11);
 }
 

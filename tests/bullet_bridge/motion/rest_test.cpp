@@ -73,7 +73,7 @@ TEST(Rest, APrismAcrossTwoOthersRestsOnItsEdgesWithoutBeingSearchedAgain) {
   const std::size_t searched = stats(world.dispatcher).pair_updates;
   const Pose start = fromBt(body.getWorldTransform());
   world.step(1000);
-  EXPECT_LE(stats(world.dispatcher).pair_updates - searched, 20u);  // of 2000
+  EXPECT_LE(stats(world.dispatcher).pair_updates - searched, 20u);  // of 2 pairs in 1000 steps
   EXPECT_LE((fromBt(body.getWorldTransform()).p - start.p).norm(), 1e-6);
 }
 
@@ -350,7 +350,7 @@ TEST(Solver, PartsThatStartInsideEachOtherSeparateGently) {
     world.step();
     const Pose after = test::partPose(body, contained.cube);
     for (const Vec3& p : contained.cube.mesh.vertices)
-      EXPECT_LE((after * p - before * p).norm(), 50.1e-6) << "step " << i;  // 0.05 m/s and rounding
+      EXPECT_LE((after * p - before * p).norm(), 50.1e-6) << "step " << i;  // kSeparation_m_s and rounding
   }
 }
 

@@ -62,7 +62,8 @@ TEST(ContactArea, ThirtyTwoContactsHaveTheMomentsOfTheWholeFace) {
     shareAreas(all, kSize_m, chosen);
     ASSERT_EQ(chosen.size(), 32u);
     const Sums want = sumsOf(all, X_WF), got = sumsOf(chosen, X_WF);
-    // The least change is found to kSettledShare; an area that would be negative is left a little.
+    // The least change of the areas is found to an accuracy of kSettledShare. An area that would become
+    // negative is set to a small positive value.
     EXPECT_NEAR(got.area_m2 / want.area_m2, 1, 0.005) << seed;
     EXPECT_LE((got.first - want.first).norm(), 0.005 * want.area_m2 * kSize_m) << seed;
     EXPECT_LE((got.second - want.second).norm(), 0.005 * want.second.norm()) << seed;

@@ -71,7 +71,7 @@ struct Truth {
 struct Found {
   int moved = 0;
   double off_m = 0, gap_off_m = 0, tilt_rad = 0;  ///< greatest errors of the moved points
-  double least_gap_m = 1e300;                     ///< least gap of all points
+  double least_gap_m = 1e300;                     ///< smallest gap of all points
 };
 
 // Checks all points of both shells within one spacing of the place where the faces touch.

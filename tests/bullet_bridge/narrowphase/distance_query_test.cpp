@@ -94,9 +94,10 @@ double gapAlong(const Vec3& n, const std::vector<Vec3>& a, const std::vector<Vec
   return std::max(of_a[0] - of_b[1], of_b[0] - of_a[1]);
 }
 
-// Of two convex bodies no points are nearer than the slab between them is thick, so where a reported distance
-// is the slab's thickness along the reported normal, it is the least. The bodies lean in all directions: the
-// nearest place is at corners, edges and faces in turn, and mostly between the points of the shell.
+// The thickness of a slab that separates two convex bodies is a lower bound of their distance. A reported
+// distance that equals the thickness of the slab along the reported normal is therefore the smallest one. The
+// bodies lean in all directions: the nearest place is at corners, edges and faces in turn, and mostly between
+// the points of the shell.
 TEST(DistanceQuery, IsTheLeastBetweenConvexBodies) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;

@@ -142,8 +142,8 @@ TEST(EndOfStep, OnAFlatFaceItsPlaneSaysAll) {
     }
 }
 
-// A contact that is met, rather than slid along, is not measured at the end of free motion. A contact whose
-// displacement is within the margin cannot leave a plane, and is not measured either.
+// A contact at which the bodies collide, instead of sliding along it, is not measured at the end of free
+// motion. A contact whose displacement is within the margin cannot leave a plane, and is not measured either.
 TEST(EndOfStep, WhatMeetsAFaceOrHardlyMovesKeepsItsPlane) {
   const double play_m = kBore_m - kBall_m;
   Scene(bore(), Vec3(play_m, 0, 0), Vec3(0.1, 0.1, 0)).expectUnchanged();

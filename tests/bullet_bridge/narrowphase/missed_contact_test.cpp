@@ -113,7 +113,7 @@ TEST_P(MissedContacts, OfAFastBodyThatTouchesAWallWithTheFloor) {
   const Polygon section{{-6e-3, -6e-3}, {30e-3, -6e-3}, {30e-3, 0}, {0, 0}, {0, 30e-3}, {-6e-3, 30e-3}};
   scene.add(search::alongX(search::makePrism(section, {}, -20e-3, 20e-3)), Pose(), true);
   constexpr double kGap_m = 2.5e-3,
-                   kSpeed_m_s = 4;  // met within the step, after the first stride of the search
+                   kSpeed_m_s = 4;  // arrives within the step, after the search's first segment
   scene.addMoving(makeBox({10e-3, 10e-3, 10e-3}), Pose::translation({0, 5e-3, 5e-3 + kGap_m}),
                   {0, 0, -kSpeed_m_s});
   EXPECT_LE(scene.deepestOf(3), kBound_m);
@@ -166,8 +166,8 @@ Mesh lyingPrism(const Polygon& section, double length_m) {
                                     Pose(rotationFromVector({0, std::numbers::pi / 2, 0}), Vec3::Zero())));
 }
 
-// At the edges of a coarse cylinder the faces turn by 15 degrees. An earlier version met these edges at
-// sampled points only.
+// At the edges of a coarse cylinder the faces turn by 15 degrees. An earlier version found contacts of these
+// edges at sampled points only.
 TEST_P(MissedContacts, OfTheSidesOfTwoCoarseCylinders) {
   Polygon section;
   for (int i = 0; i < 24; ++i) {

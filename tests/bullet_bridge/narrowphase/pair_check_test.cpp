@@ -97,8 +97,9 @@ TEST(PairCheck, MissesNothingInAStepThatStaysFree) {
   }
 }
 
-// A motion is not checked again if it ends within a twentieth of the rest gap of a clear one. A motion that
-// ends farther away is checked.
+// If a motion was found to be free of contact, a later motion from the same start is not checked if its end
+// pose is within a twentieth of the rest gap (FeatureMotion::kRest_m) of the first motion's end pose. A
+// motion that ends farther away is checked.
 TEST(PairCheck, AClearWayHoldsForWaysThatEndBesideIt) {
   if (!test::kIsDouble) GTEST_SKIP() << "poses are coarser than a nanometre";
   constexpr double kGap_m = 100e-6, kMissed_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;
@@ -127,7 +128,8 @@ TEST(PairCheck, AClearWayHoldsFromItsStartOnly) {
   EXPECT_FALSE(scene.missedAt(X_end).empty());
 }
 
-// A motion that a later round found clear was not checked for gaps that were small at the start.
+// A motion that a later check of the step found free of contact was not checked for gaps that were small at
+// the start.
 TEST(PairCheck, AClearWayOfALaterRoundIsLookedAtForSmallGaps) {
   if (!test::kIsDouble) GTEST_SKIP() << "poses are coarser than a nanometre";
   BoxAbovePlate scene(rotationFromVector({0.4, 0.3, 0}), 15e-9);
@@ -175,7 +177,7 @@ TEST(PairCheck, ReportsTheExactDepthOfWhatGoesIn) {
   }
 }
 
-// The free share ends shortly before the corner meets the face.
+// The share of the step that is free of contact ends shortly before the corner touches the face.
 TEST(PairCheck, TheFreeShareEndsWhereACornerMeetsTheFace) {
   test::Random random(2);
   for (int i = 0; i < 40; ++i) {
@@ -237,7 +239,7 @@ TEST(PairCheck, ReportsWhatGoesInBetweenThePointsOfCurvedFaces) {
   }
 }
 
-// The ball turns to another side in each round, until the manifolds are full. The overlap must still be
+// The ball turns to another side before each check, until the manifolds are full. The overlap must still be
 // reported as missed.
 TEST(PairCheck, SaysWhatItMissesAlsoWithoutRoom) {
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;

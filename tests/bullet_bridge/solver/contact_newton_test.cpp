@@ -259,7 +259,8 @@ struct Heap : Cubes {
   }
 };
 
-// With slip terms from the previous round, half of the problems are not solved in as many steps.
+// If the slip terms were taken from the previous round (outer iteration), half of the problems would not be
+// solved in this number of steps.
 TEST(ContactNewton, SettlesTheFrictionOfAHeapInFewSteps) {
   constexpr int kHeaps = 50, kMost = 60;
   int converged = 0, steps = 0;

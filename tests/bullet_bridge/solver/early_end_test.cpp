@@ -48,7 +48,7 @@ class FakeCheck : public StepCheck {
   void endStep() override {}
 
   static constexpr double kSlack_m = 1e-6;
-  btManifoldPoint* missed = nullptr;  ///< reported as missed in every round
+  btManifoldPoint* missed = nullptr;  ///< contact that is reported as missed in every check
   int rounds = 0;
 
  private:

@@ -101,7 +101,7 @@ TEST(PenaltyNewton, EachPointPushesByItsGapAtTheEndOfTheStepAndHoldsWithinCoulom
         EXPECT_NEAR(p.f_n_N, wanted_N, 1e-6 * (1 + wanted_N)) << seed;
         const double held_N = p.k_N_per_m * p.bend_W.norm();
         EXPECT_LE(held_N, p.mu * p.f_n_N * (1 + 1e-6) + 1e-9) << seed;
-        // Below the cone the bristle has been bent by the whole slip.
+        // Inside the friction cone the bristle is deflected by the whole displacement.
         if (held_N < 0.99 * p.mu * p.f_n_N) {
           EXPECT_LE((p.bend_W - kDt_s * (v - v.dot(p.n_W) * p.n_W)).norm(), 1e-12) << seed;
         }

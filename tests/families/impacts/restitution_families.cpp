@@ -194,9 +194,9 @@ struct Corner {
 Corner fastCorner(int member) {
   return Corner(member, std::pair(0.8, 5.0));
 }
-// A contact that is met within the step acts with the lever arm at the start of the step. For a point of the
-// other body this lever arm is wrong by the distance travelled along the face, here by up to half of the
-// cube.
+// An impact within a step is computed with the lever arm that the contact point has at the start of the step.
+// If the contact point is fixed to the other body, the lever arm at the time of the impact differs by the
+// distance that the cube slides along that body until then, here up to half of the cube's size.
 Corner fasterCorner(int member) {
   return Corner(member, std::pair(5.0, 10.0));
 }

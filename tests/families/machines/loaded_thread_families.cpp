@@ -93,7 +93,7 @@ std::string describe(int member) {
 }
 
 // The torque rises evenly, from a share of the theoretical torque, until the nut has turned by kTurned_rad.
-// At the right torque this turn takes two or three steps, so the torque is measured to a hundredth.
+// At the right torque the nut turns by kTurned_rad in two or three steps, so the torque is measured to 1 %.
 double error(dynamics::Mode mode, double from, int member) {
   // Points are a millimetre apart, as in scenes that state no spacing.
   static const dynamics::Engine engine = dynamics::vpsEngine({0.25e-3, 1e-3});

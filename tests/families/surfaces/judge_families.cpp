@@ -159,7 +159,7 @@ Passage passageThrough(int member) {
   return passage;
 }
 
-/// A body that passes ten micrometres beside the fixed one; the vertices give the least gap.
+/// A body that passes ten micrometres beside the fixed one; the vertices give the smallest gap.
 Passage passageBeside(int member) {
   Random random(3000 + static_cast<std::uint64_t>(member));
   Passage passage;

@@ -197,14 +197,14 @@ TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
         edge = apart;
         sine = d0.normalized().cross(d1.normalized()).norm();
       }
-    if (corner <= 0 || edge >= corner || edge > 0.5 || sine < 0.1) continue;  // found by points
+    if (corner <= 0 || edge >= corner || edge > 0.5 || sine < 0.1) continue;  // found by shell points
     // The distance of overlapping boxes without a corner inside is not defined: an edge pierces a face.
     bool overlaps = false;
     for (const EdgeSegment& s : edges0.segments())
       overlaps |= pierces(X_01.inverse() * s.from, X_01.inverse() * s.to, size1);
     for (const EdgeSegment& s : edges1.segments()) overlaps |= pierces(X_01 * s.from, X_01 * s.to, size0);
     if (overlaps) continue;
-    double nearest = 1e300;  // least difference from the true distance
+    double nearest = 1e300;  // smallest difference from the true distance
     for (const EdgeCrossing& c : crossings(edges0, edges1, X_01, 0.5)) {
       if (c.gap_m < 0) continue;
       nearest = std::min(nearest, std::abs(c.gap_m - edge));

@@ -139,7 +139,8 @@ Mesh tetrahedron() {
   return mesh;
 }
 
-// A corner at height h that falls by d > h meets the face after the share (h - least) / d of its motion.
+// A corner at height h above a face falls by d > h. The check ends the motion at a gap of kLeast_m, which is
+// after the fraction (h - kLeast_m) / d of the motion.
 TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
   const Body tip(tetrahedron());
@@ -151,7 +152,7 @@ TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
   ASSERT_EQ(found.size(), 1u);
   const FeatureContact& c = found[0];
   EXPECT_EQ(c.kind, FeatureContact::Kind::CornerOnFacet);
-  // The search may stop a tenth of the least distance early.
+  // The search may stop early by a tenth of kLeast_m.
   EXPECT_NEAR(c.share, (height_m - kLeast_m) / fall_m, 0.1 * kLeast_m / fall_m);
   EXPECT_NEAR(c.start_m, height_m, 1e-15);
   EXPECT_LE((c.n - Vec3::UnitZ()).norm(), 1e-9);

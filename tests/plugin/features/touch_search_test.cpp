@@ -119,8 +119,8 @@ TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
     Pairs pairs;
     for (const TouchPair& pair : found) pairs.emplace(pair.corner, pair.facet);
     EXPECT_EQ(pairs.size(), found.size());
-    // The search finds all pairs that can touch after a turn by less than the slack, and no more pairs than
-    // the tolerance of a product adds.
+    // The search finds all pairs that can touch after a rotation by less than slack_rad. Other pairs are
+    // found only within the tolerance of a product of unit vectors.
     EXPECT_TRUE(
         holds(searchAll(a, b, X, margin_m, Near::ToItsBoxAndPlane, Mat3::Identity(), slack_rad), pairs));
     for (int k = 0; k < 3; ++k) {

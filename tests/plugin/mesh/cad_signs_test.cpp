@@ -125,7 +125,7 @@ Agreement compare(const std::string& name, const Mesh& mesh, int voxels) {
   std::vector<Vec3> ways;
   for (int i = 0; i < 11; ++i) ways.push_back(random.inBox(Vec3::Ones()).normalized());
   for (int n = 0; n < 400; ++n) {
-    // Half of the positions near the surface, half anywhere.
+    // Half of the positions are near the surface, half are anywhere.
     Vec3 p = bounds(mesh).center() + random.inBox(0.6 * bounds(mesh).size());
     if (n % 2) {
       const auto pick = static_cast<std::size_t>((0.5 + 0.5 * random.unit()) * 0.999 *

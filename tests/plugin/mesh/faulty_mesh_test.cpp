@@ -95,10 +95,10 @@ Mesh plateWithHole(double hole_m, bool is_closed, const Pose& X) {
 }
 
 TEST(FaultyMesh, APlaneHoleOfAnySizeLeavesEverySignRight) {
-  // The missing part is plane, so it covers less than half of the solid angle from either side: w stays above
-  // 0.5 inside and below 0.5 outside, up to the hole. Only the error of the series (0.02 with a margin) blurs
-  // the hole's own plane: over a hole of size a the slope of w is at least 1 / pi a in its middle and larger
-  // at its rim.
+  // The missing part is plane, so it covers less than half of the solid angle from either side: the winding
+  // number w stays above 0.5 inside and below 0.5 outside, up to the hole. Only the error of the series (0.02
+  // with a margin) blurs the hole's own plane: over a hole of size a the slope of w is at least 1 / pi a in
+  // its middle and larger at its rim.
   for (const double hole_voxels : {0.1, 0.5, 1.0, 3.0, 10.0, 30.0}) {
     const double hole_m = hole_voxels * kFaultyVoxel_m;
     const Pose X = RandomPoints(3).pose(0.01), X_inverse = X.inverse();
@@ -145,7 +145,7 @@ TEST(FaultyMesh, FlippedFacetsAreTurned) {
   VoxMap map;
   const MeshReport report = reportOf(flipped, &map);
   EXPECT_EQ(report.flipped_facets, count);
-  EXPECT_FALSE(report.signed_by_winding);  // a sound mesh again
+  EXPECT_FALSE(report.signed_by_winding);  // the mesh has no faults again
   EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
 }

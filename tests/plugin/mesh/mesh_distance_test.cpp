@@ -107,9 +107,9 @@ TEST(MeshDistance, OfTrianglesEquallyNearTheFirstIsTheNearest) {
 }
 
 TEST(MeshDistance, FindsTheNearestInTreesThatDivideUnevenly) {
-  // Three meshes: each triangle smaller than the one before, so that divisions by area take off few at a time
-  // and the tree reaches divisions by count; all triangles equal, so that no division separates them; one
-  // triangle larger than all others together.
+  // Three meshes: in the first, each triangle is smaller than the one before, so that divisions by area split
+  // off few triangles and the tree reaches the levels that divide by count; in the second, all triangles are
+  // equal, so that no division separates them; in the third, one triangle is larger than all others together.
   Mesh shrinking, alike, mixed;
   const auto add = [](Mesh& mesh, const Vec3& at, double size_m) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());

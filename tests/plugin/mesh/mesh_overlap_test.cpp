@@ -94,8 +94,9 @@ double sampledOnFacets_m(const OverlapMesh& in, const OverlapMesh& of, const Pos
   return sampled_m;
 }
 
-// Many more points of both surfaces than the edges have: none may be deeper in the other mesh, except in the
-// interior of faces, which the other mesh's edges represent.
+// Samples 51 points on each edge of both meshes. No sample may be deeper in the other mesh than the depth
+// that deepestOverlap() returns. The returned depth exceeds that of the samples by at most half of their
+// spacing, except if the deepest place is in the interior of a face; then the faces are sampled too.
 TEST(MeshOverlap, NoPointOfAnEdgeIsDeeper) {
   test::RandomPoints random(5);
   const OverlapMesh a = box(0.2, 0.15, 0.1), b = overlapMesh(makeTube(0.1, 0.06, 0.15, 8));

@@ -244,7 +244,7 @@ TEST_P(EveryPair, CullingFindsExactlyWhatAnExhaustiveQueryFinds) {
         ASSERT_TRUE(i == 0 || all.contacts[i - 1].id < e.id);
         ASSERT_NEAR(e.n_M.norm(), 1, 1e-12);
       }
-      // The least distance is exact when something touches, otherwise a bound.
+      // The smallest distance is exact if a point is within the band; otherwise it is a lower bound.
       ASSERT_LE(a.min_distance_m, b.min_distance_m);
       if (!all.contacts.empty()) {
         ASSERT_EQ(a.min_distance_m, b.min_distance_m);

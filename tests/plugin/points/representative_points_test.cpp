@@ -70,7 +70,7 @@ TEST(RepresentativePoints, EachEqualsTheQuerysContactAndTheyAreFew) {
   ASSERT_GT(all.size(), 10000u);
   EXPECT_LT(few.size(), all.size() / 10);
   auto at = all.begin();
-  for (const Contact& c : few) {  // ascending, as the query's
+  for (const Contact& c : few) {  // in ascending order, as the contacts of a query
     at = std::find_if(at, all.end(), [&](const Contact& other) { return other.id == c.id; });
     ASSERT_NE(at, all.end()) << c.id;
     EXPECT_TRUE(isSame(c, *at)) << c.id;
@@ -105,7 +105,8 @@ TEST(RepresentativePoints, TheirSurfacesHaveTheMomentsOfTheNearPoints) {
 }
 
 TEST(RepresentativePoints, EachOmittedPointHasANearerOneInItsGroupNowAndAfterTheStep) {
-  std::map<std::uint32_t, std::pair<double, double>> led;  // least gaps by group, now and after the step
+  // By group: the smallest gaps now and after the step.
+  std::map<std::uint32_t, std::pair<double, double>> led;
   std::map<std::uint32_t, bool> is_given;
   for (const Contact& c : fit().lead(fit().X_MP)) {
     is_given[c.id] = true;

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "vps_scenes/fits/check_fields.h"
 #include "vps_scenes/planning/trade_fields.h"
 
 namespace vps::viewer {
@@ -54,6 +55,39 @@ TEST(Csv, WhatWasNotMeasuredHasEmptyCells) {
     EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
   EXPECT_EQ(rows, 2);
   EXPECT_NE(text.find(",0.25,"), std::string::npos) << text;
+}
+
+// The order of the lines is what programs have read since the first version.
+TEST(Csv, TheNumbersOfACheckHaveTheirPlacesAndErrors) {
+  const auto linesOf = [](const auto& of, const auto& fields) {
+    std::string out;
+    for (const CsvNumber& number : csvNumbers(of, fields))
+      out += csvLine({number.object, number.quantity, csvNumber(number.value), csvNumber(number.error)});
+    return out;
+  };
+  scenes::CheckedPair pair;
+  pair.clearance_m = 0.25;
+  pair.error_m = 0.125;
+  pair.volume_error_m3 = 0.5;
+  EXPECT_EQ(linesOf(pair, scenes::kCheckedPairFields),
+            ",clearance_m,0.25,0.125\n,interference_depth_m,0,0.125\n,interference_volume_m3,0,0.5\n");
+  scenes::CheckedFit fit;
+  fit.shaft_m = 2;
+  fit.bore_m = 1;
+  fit.diametral_clearance_m = -1;
+  fit.error_m = 0.5;
+  fit.press.emplace().force_N = 3;
+  EXPECT_EQ(linesOf(fit, scenes::kCheckedFitFields),
+            ",diametral_clearance_m,-1,0.5\npress,pressure_Pa,0,NaN\npress,force_N,3,NaN\n"
+            "press,declared_force_N,0,NaN\n,shaft_m,2,0.5\n,bore_m,1,0.5\n");
+  scenes::CheckedPart part;
+  EXPECT_EQ(linesOf(part, scenes::kCheckedPartFields), "");
+  part.play.emplace().rad[1] = 2;
+  part.play->error_m[0] = 0.5;
+  const std::string lines = linesOf(part, scenes::kCheckedPartFields);
+  EXPECT_TRUE(lines.starts_with(",play_m +x,0,0.5\n,play_rad +x,0,0\n,play_m -x,0,0\n,play_rad -x,2,0\n"))
+      << lines;
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 12);
 }
 
 TEST(Csv, NoColumnOccursTwice) {

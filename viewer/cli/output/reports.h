@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables, sentences and files in which commands report their results: check_report.cpp, plan_report.cpp,
-// run_report.cpp and trade_report.cpp. JSON is in json_out.h.
+// Tables, sentences and files in which commands report their results: check_tables.cpp, plan_tables.cpp,
+// run_tables.cpp and trade_tables.cpp. JSON is in json_out.h, and the HTML pages are in viewer/report.
 #pragma once
 
 #include <string>

@@ -153,7 +153,8 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
   }
   if (query.state && query.state->leading)
     points_tested += query.state->leading->find(*theirs.map, X_MP, leaders, near, memory).points_tested;
-  // The buffer's capacity depends on other pairs; the limit must not.
+  // The number of candidates is limited to limitOf(), not to the buffer's capacity, which depends on other
+  // pairs.
   const std::size_t count = std::min(near.contacts.size(), limitOf(settings, shell));
   for (const Contact& contact : std::span(near.contacts).first(count))
     out.push_back(candidateOf(contact, side, other));

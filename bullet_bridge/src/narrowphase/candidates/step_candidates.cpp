@@ -31,8 +31,8 @@ Find findingFor(const PairView& pair, const PairState& state) {
   return finds_later ? findPointCandidates : findCandidates;
 }
 
-constexpr double kAtStart_s =
-    -1;  // marks a candidate that is met later but refined at the bodies' present poses
+// Marks a candidate whose plane the body meets later in the step, but which is refined at the present poses.
+constexpr double kAtStart_s = -1;
 
 // True if a contact plane that is met along the path can be referred to the present poses. Where bodies turn,
 // the path of a point bends from its tangent, and the plane turns.

@@ -58,7 +58,7 @@ inline bool isMissed(double start_m, double end_m, double tolerated_m) {
 
 /// Moves candidates of curved faces to the deepest vertex of their facet, if that vertex protrudes enough and
 /// is deeper in the other body than the candidate. Distance and normal are then those of the vertex, exactly.
-/// Each vertex takes one candidate.
+/// At most one candidate is moved to each vertex.
 /// @param candidates  refined at the pair's poses
 /// @param contact_margin_m  Settings::contact_margin_m
 void moveToFacetCorners(const PairView& pair, double contact_margin_m, std::vector<Candidate>& candidates);

@@ -42,7 +42,8 @@ bool grazes(const FeatureContact& c, const PairView& start, const EndPoses& end,
   return true;
 }
 
-// In a late round, gaps from which the next step can restore the rest gap are accepted.
+// In a late check of the step (CheckRound::isLate()), gaps from which the next step can restore the rest gap
+// are accepted.
 void findContacts(const PairView& start, const EndPoses& end, CheckRound round, PairState& state,
                   std::vector<FeatureContact>& found) {
   found.clear();
@@ -166,7 +167,7 @@ class Linearised {
     return missed;
   }
   [[nodiscard]] std::uint64_t key(const FeatureContact& c) const { return at_end_(c).key(); }
-  // The contact with a gap that is out of reach, so that it loses its load.
+  // Returns the contact with a gap so large that the contact loses its load.
   MissedContact without(const FeatureContact& c, PairState& state) const {
     MissedContact missed = (*this)(c, state);
     missed.end_gap_m = kOutOfReach_m;

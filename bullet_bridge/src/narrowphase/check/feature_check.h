@@ -45,8 +45,8 @@ bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& st
 
 /// Appends a contact for each pair of features that the motion brings too close together, up to kMostAdded.
 /// @param start  the pair at the start of the step
-/// @param round  in the first round small gaps are restored too (FeatureMotion::check()); in late rounds,
-///   gaps from which the next step can restore the rest gap are ignored
+/// @param round  number of the check: the first check restores small gaps too (FeatureMotion::check()); late
+///   checks ignore gaps from which the next step can restore the rest gap
 void addFeatureContacts(const PairView& start, const EndPoses& end, CheckRound round, PairState& state,
                         std::vector<MissedContact>& out);
 

@@ -10,27 +10,27 @@
 
 namespace vps::bullet {
 
-// Points out of reach had a gap above the contact margin at the predicted end of the step, so they do not
-// touch if the deviation is less than the margin, or if the travel is within the distance that was searched
-// in every direction.
+// A point that the selection did not find had a gap above the contact margin at the predicted end of the
+// step. Such a point does not touch if the motion deviates from the prediction by less than the margin, or if
+// the travel is within the distance that was searched in every direction.
 bool PairCheck::mayMissPoints(const Motion& m, const PairView& at_start) const {
   const double margin_m = state_.context->settings.contact_margin_m;
   const bool is_in_reach = !state_.selection.is_of_path &&
                            (m.deviation_m <= margin_m || m.travel_m <= margin_m + state_.selection.any_way_m);
-  // Of neighbouring points, the point nearest now and the point nearest at the predicted end were selected.
-  // Another point becomes nearer if the part turns differently.
+  // Of neighbouring points, only the point nearest now and the point nearest at the predicted end were
+  // selected. Another of these points may be the nearest if the part turns otherwise than predicted.
   const double sampling_m = state_.selection.sampling_m * std::min(m.turn_rad, m.turn_deviation_rad);
   if (!is_in_reach || sampling_m > m.tolerated_m) return true;
   if (std::any_of(state_.selection.refined.begin(), state_.selection.refined.end(),
                   [&](const Candidate& c) { return leavesCurve(m, at_start, c); }))
     return true;
-  // Vertices of curved faces are not shell points.
+  // The selection contains shell points only, and vertices of curved faces are not shell points.
   return haveFacetCorners(at_start, margin_m, state_.selection.refined);
 }
 
 // True if the step moves the bodies so far along curved faces that the planes of known points do not suffice:
-// a concave face bends from its plane towards the point, or the gaps between the points of round faces are
-// smaller by more than the rest of the margin.
+// a concave face bends from its plane towards the point; or the sampling error (the gap between two shell
+// points of a round face is smaller than at the points) and the deviation together exceed the contact margin.
 bool PairCheck::leavesCurve(const Motion& m, const PairView& at_start, const Candidate& c) const {
   if (c.isCrossing() || (!(c.hollow_per_m > 0) && !(c.curvature_per_m > 0))) return false;
   const double margin_m = state_.context->settings.contact_margin_m;
@@ -158,8 +158,8 @@ void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vecto
 }
 
 // The contact acts with its lever and normal at one time within the step (StepPath). With the point at the
-// start and the plane at the end, the lever would be turned against the normal by the step's rotation.
-// Contact would then brake a screw that turns by 2 degrees per step by two thirds of the slope of its thread.
+// start and the plane at the end, the normal would be turned relative to the lever by the step's rotation. At
+// 2 degrees per step this error is two thirds of the slope of a screw's thread, and would brake the screw.
 void PairCheck::put(const Motion& m, const Placed& at_start, const Candidate& start, const Candidate& end,
                     std::vector<MissedContact>& out) {
   MissedContact added;

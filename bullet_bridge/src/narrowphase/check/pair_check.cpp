@@ -141,7 +141,8 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vec
   if (!round.mayRetake() || out.size() != had || !(m.bend_m > apart_m)) return;
   if (m.turnsFar(0) && areBothCurved(at_start.pair, state_)) return;
   relinearise(m, at_start, {Relinearising::Rows::Loaded, apart_m}, out);
-  // A row that is computed again leaves its load to neighbouring rows that are equally wrong.
+  // If only the loaded rows were computed again, they would pass their load to neighbouring rows, which would
+  // still have the wrong lever and normal.
   if (out.size() != had) relinearise(m, at_start, {Relinearising::Rows::Others, apart_m}, out);
 }
 

@@ -91,10 +91,12 @@ class Impulses {
       for (int i = 0; i < counts_.back(); ++i) points_.push_back(manifold->getContactPoint(i));
     }
   }
-  /// Contacts that are new in this step share the load of contacts that no longer exist, in proportion to
-  /// their solved impulses. Bullet's solvers keep the friction of contacts that are loaded and unloaded again
-  /// while they iterate. Without starting impulses, contacts that take the load of other contacts would make
-  /// a body slide too slowly.
+  /// A contact that existed before this step gets back the impulse that it had. Contacts that are new in this
+  /// step start with impulses in proportion to their solved impulses. The sum of the new contacts' normal
+  /// impulses is the load of the contacts that were dropped in this step, but at most the solved sum.
+  ///
+  /// Without these starting impulses a body would slide too slowly: while Bullet's solvers iterate, they load
+  /// a new contact and unload it again, but keep the contact's friction.
   void restore(double lost_load_Ns) const {
     const double new_load_Ns = loadOfNew_Ns();
     const double share = new_load_Ns > 0 ? std::clamp(lost_load_Ns / new_load_Ns, 0.0, 1.0) : 0;
@@ -130,8 +132,8 @@ class Impulses {
   std::vector<btManifoldPoint> points_;
 };
 
-// Writes the gaps of the rounds as distances, since Bullet's solvers know no rest gap and predict the end of
-// the step to first order only.
+// Writes the gaps of the solved contacts into their manifold points as distances, since Bullet's solvers know
+// no rest gap and predict the end of the step to first order only.
 void writeDistances(const RelativeMotion& motion, std::span<const RigidContact> contacts) {
   for (const RigidContact& c : contacts) {
     if (bounces(*c.point)) continue;

@@ -49,8 +49,8 @@ double StepPath::effect(const Row& of, const Row& on) const {
 
 namespace {
 
-// Accuracy of the change of velocity and of the gap: that of differences of float positions a decimetre from
-// the centre.
+// Smaller displacements, and smaller changes of them during the step, count as zero. The value is the
+// rounding error of the difference of two single-precision positions a decimetre from the centre.
 constexpr double kKnown_m = 10 * kRounding_m;
 
 template <typename Row>

@@ -133,7 +133,8 @@ void passToSolver(PairState& state) {
   PenaltyContacts& contacts = *state.context->penalty_contacts;
   const bool has_points = !state.penalty.points.empty();
   const bool was_registered = std::exchange(state.is_registered, has_points);
-  if (was_registered && !contacts.hasSolver()) warnWithoutSolver();  // a whole step has passed
+  // The points were registered a whole step ago, and no solver has used them since.
+  if (was_registered && !contacts.hasSolver()) warnWithoutSolver();
   if (!has_points && was_registered) contacts.remove(&state.penalty);
   if (has_points)
     for (const btPersistentManifold* manifold : state.writer->manifolds())

@@ -59,8 +59,8 @@ struct Selection {
 };
 
 /// Motion in a step for which a check found no missed contact. The result holds for any motion that begins
-/// and ends within a share of the rest gap of that motion. Most pairs repeat their motion from round to
-/// round, and bodies at rest from step to step.
+/// and ends within a share of the rest gap of that motion. Most pairs repeat their motion from one
+/// check of a step to the next, and bodies at rest from step to step.
 class ClearWay {
  public:
   void forget() { is_known_ = false; }

@@ -114,9 +114,10 @@ bool queriesPoints(const PairView& pair, int i, Sides sides);
 /// Number of sides whose points are queried. With two sides, the areas of their points overlap.
 int sideCount(const PairView& pair, Sides sides);
 
-/// Moves both bodies to their poses at t_s within a step of dt_s, in free motion at the velocity of the
-/// step's end, as all predictions assume. (The true velocity at t_s differs: a stiff coupling pulls nearly as
-/// far in a part of the step.)
+/// Moves both bodies to their predicted poses at t_s within a step of dt_s. The prediction assumes free
+/// motion at the velocity that each body has at the end of the step, as all predictions of the narrow phase
+/// do. (A step of length t_s would end at another pose: a stiff coupling pulls a body nearly as far in a
+/// short step as in a long one.)
 void advance(PairView& pair, const PairView& start, double dt_s, double t_s);
 
 /// Displacements of both bodies in the step at their present velocities, in W.

@@ -94,7 +94,7 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
   for (int i = 0; i < kMostRetakes; ++i) {
     const Vec3 way = wayToLeast(*own, *their, reach_m);
     if (way.norm() < kNearestShare * reach_m) break;
-    // Beyond the reach another shell point is nearer and finds the same place.
+    // Farther than the spacing another shell point is nearer to the place, and its candidate is moved there.
     const Vec3 to_W = own->q_W + way;
     if ((to_W - c.p_W).norm() > reach_m) return false;
     if (i == kMostRetakes - 1) {
@@ -128,7 +128,7 @@ bool moveToFoot(Candidate& c, const SideView& side, const Vec3& from_q_W) {
   const std::optional<FacePoint> own = nearestFace(side, q_W, from_q_W.norm() + kSameGap_m);
   if (!own) return false;
   const Vec3 n_W = (side.side == 0 ? -1 : 1) * own->outward_W;
-  if ((n_W - c.n_W).norm() * from_q_W.norm() < kSameGap_m) return false;  // flat
+  if ((n_W - c.n_W).norm() * from_q_W.norm() < kSameGap_m) return false;  // the face is flat
   c.p_W = own->q_W;
   c.n_W = n_W;
   c.distance_m = (q_W - own->q_W).dot(own->outward_W);

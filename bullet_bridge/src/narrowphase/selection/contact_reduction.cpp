@@ -35,7 +35,8 @@ bool isMoreUrgent(const Candidate& a, const Candidate& b, Measure measure) {
   return ua != ub ? ua < ub : a.key() < b.key();
 }
 
-/// The data of a candidate that the reduction needs: half of its size, so that each pass reads less memory.
+/// The data of a candidate that the reduction needs. A Brief has half the size of a Candidate, so that each
+/// pass reads less memory.
 struct Brief {
   std::int32_t at[3];   // cell of the finest grid
   std::uint32_t kind;   // direction, side, crossing or point
@@ -192,7 +193,8 @@ double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, doubl
     keepMostUrgent(briefs, level, candidates);
     used_m = size_m;
   }
-  // Briefs are in ascending order, so that each candidate moves to the front or stays.
+  // The indices in `briefs` ascend. Each kept candidate therefore stays or moves towards the front, and none
+  // is overwritten before it has moved.
   for (std::size_t i = 0; i < briefs.size(); ++i)
     if (briefs[i].index != i) candidates[i] = candidates[briefs[i].index];
   candidates.resize(briefs.size());

@@ -157,7 +157,7 @@ void dropStayingAway(const PairView& pair, const RelativeMotion& motion, const E
     for (const Pose& X : way)
       nearest_m = std::min(nearest_m,
                            c.distance_m + (c.side == 1 ? Vec3(X.R * c.n_W) : c.n_W).dot(X * c.p_W - c.p_W));
-    // The arc between two places leaves its chord by this.
+    // Greatest distance of the arc between two of the places from its chord.
     const double sagitta_m = between_rad * between_rad / 8 * (c.p_W - center).norm();
     return nearest_m - sagitta_m > motion.contact_margin_m + error_m(c);
   });

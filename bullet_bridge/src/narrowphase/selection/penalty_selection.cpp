@@ -65,7 +65,8 @@ bool reusePenaltyPoints(const PairView& pair, PairState& state, CandidateMotion&
 }
 
 /// Updates a pair's points from candidates (ascending by key), which `moved` carries from the poses of their
-/// query to the present ones. Points that remain keep bend, force and tolerated overlap.
+/// query to the present ones. A point that the pair had before keeps its normal force, the deflection of its
+/// friction bristle (PenaltyPoint::bend_W) and the rest of its tolerated overlap.
 /// @param usual_N_per_m3  stiffness per area of surfaces without a value of their own
 /// @param sides  number of sides whose points are queried. Both sides share the stiffness, since their areas
 /// overlap

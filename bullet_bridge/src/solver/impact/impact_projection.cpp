@@ -175,7 +175,8 @@ bool ImpactProjection::solveAsBefore(const Known& known, double tolerance_m_s, s
 }
 
 void ImpactProjection::remember(std::span<const std::uint8_t> chosen) {
-  constexpr std::size_t kMost = 4;  // assumed; a body that bounces between two others alternates between two
+  // Assumed. A body that bounces between two others alternates between two active sets.
+  constexpr std::size_t kMost = 4;
   const auto n = static_cast<Eigen::Index>(active_.size());
   Known now{{chosen.begin(), chosen.end()}, active_, factor_.topLeftCorner(n, n)};
   for (Known& known : known_)

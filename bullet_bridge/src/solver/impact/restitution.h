@@ -86,13 +86,13 @@ class Restitution {
     std::vector<Vec6> external;  // change of velocity by everything except contacts and joints
     std::vector<Vec6> kick;      // change of velocity by gravity and the user's forces
     std::vector<Vec6> solved;    // end velocities of the solution
-    std::vector<Vec6> v;         // end velocities that are sought
+    std::vector<Vec6> v;         // end velocities with restitution, the result
     std::vector<Contact> contacts;
     std::vector<JointRow*> joints;
     std::vector<ImpactRow> rows;     // normals of the contacts, then rows of joints
     std::vector<double> solved_Ns;   // impulses of the rows in the solution
     std::vector<double> bounced_Ns;  // impulses of the impact alone
-    std::vector<double> p_Ns;        // in all
+    std::vector<double> p_Ns;        // total impulses of the rows
   };
 
   [[nodiscard]] bool isImpact(const RigidContact& c, double threshold_m_s) const;

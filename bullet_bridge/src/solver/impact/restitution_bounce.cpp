@@ -39,7 +39,7 @@ std::vector<Vec6> Restitution::beforeStep(std::span<const BodyEnd> ends, double 
   }
   const bool is_free = std::all_of(group_.rows.begin(), group_.rows.end(),
                                    [](const ImpactRow& row) { return row.body[0] >= 0 && row.body[1] >= 0; });
-  // A push moves bodies without momentum.
+  // The push moves bodies without momentum, but changes the lever arms of their linear momenta.
   for (std::size_t i = 0; is_free && i < group_ends.size(); ++i) {
     const IslandBody& body = island_.bodies[static_cast<std::size_t>(group_.bodies[i])];
     const Vec3 pushed_W =
@@ -76,7 +76,8 @@ double Restitution::shareOfImpact(const std::vector<Vec6>& before, double dt_s) 
 std::vector<std::uint8_t> Restitution::holding(const std::vector<Vec6>& before, double dt_s) const {
   std::vector<std::uint8_t> rows(group_.rows.size(), 1);
   for (std::size_t k = 0; k < group_.contacts.size(); ++k) {
-    const double kick_m_s = 2 * std::abs(kickAlong(k));  // more than the 3/2 kick in the reflected velocity
+    // `before` contains at most 3/2 of the kick; twice the kick is above that.
+    const double kick_m_s = 2 * std::abs(kickAlong(k));
     rows[k] = group_.rows[k].velocity(before) >= -kick_m_s &&
               group_.contacts[k].of->gap_m <= group_.contacts[k].touch_m + kick_m_s * dt_s;
   }

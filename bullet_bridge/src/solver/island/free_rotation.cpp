@@ -12,8 +12,9 @@
 namespace vps::bullet {
 namespace {
 
-// The factor h of meanAngularVelocity(). Above kBulletTurn_rad Bullet limits the angle in sine and cosine but
-// not the length of the axis, so that the turn continues to grow by half its tangent.
+// The factor h(W) in the equation of meanAngularVelocity() (island.h). Above kBulletTurn_rad Bullet limits
+// the angle in sine and cosine but not the length of the axis, so that the tangent of half the rotation
+// continues to grow in proportion to the speed.
 double halfTangent_s(double speed_rad_s, double dt_s) {
   const double angle_rad = std::min(speed_rad_s * dt_s, kBulletTurn_rad);
   return angle_rad > 0 ? dt_s * std::tan(0.5 * angle_rad) / angle_rad : 0.5 * dt_s;
@@ -27,8 +28,8 @@ struct MeanVelocity {
     const Vec3 JW = inertia_kg_m2.cwiseProduct(W);
     return JW - L + halfTangent_s(W.norm(), dt_s) * W.cross(JW);
   }
-  /// Newton's method, starting at W. The slope neglects the dependence of h on W, which is of second order in
-  /// the step.
+  /// Newton's method, starting at W. The derivative neglects that the factor h (halfTangent_s) depends on W,
+  /// an effect of second order in dt_s.
   [[nodiscard]] Vec3 solve(Vec3 W, double dt_s) const {
     double last_change_rad_s = std::numeric_limits<double>::infinity();
     for (int i = 0; i < kMostIterations; ++i) {

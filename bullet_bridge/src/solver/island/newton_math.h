@@ -56,10 +56,11 @@ class SymmetricSum {
   Mat3 krr_ = Mat3::Zero();
 };
 
-/// Minimises a convex function along a step: returns 1, or the share of the step at which the slope is nearly
-/// zero. The slope increases along the step, since the function is convex.
-/// @param slope  slope at the start of the step; negative
-/// @param slopeAt  the slope at a share of the step
+/// Minimises a convex function along a step of Newton's method: returns 1, or the share of the step at which
+/// the function's derivative along the step is nearly zero. The derivative increases along the step, since
+/// the function is convex.
+/// @param slope  derivative at the start of the step; negative
+/// @param slopeAt  returns the derivative at a share of the step
 template <typename SlopeAt>
 double lineSearch(double slope, const SlopeAt& slopeAt) {
   double low = 0, low_slope = slope, high = 1, high_slope = slopeAt(1);

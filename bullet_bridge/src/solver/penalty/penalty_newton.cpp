@@ -168,7 +168,7 @@ SolveOutcome PenaltyNewton::solve(double residual_m_s, int iteration_limit, End 
     }
     if (!newtonStep(gradient_, step_)) break;
     const double slope = sumOfProducts(gradient_, step_);
-    if (!(slope < 0)) {  // balanced as well as rounding allows, or a value is not finite
+    if (!(slope < 0)) {  // rounding allows no smaller gradient, or a value is not finite
       outcome.is_converged =
           slope >= 0 && (end == End::Short || imbalance_m_s() < residual_m_s / kAccuracyShare);
       break;

@@ -6,11 +6,14 @@
 //
 //     1/2 (u - u0)' M (u - u0) + sum 1/2 k min(gap + dt n.v, 0)^2 + sum H(bend + dt v_t)
 //
-// where v is a point's relative velocity and H the potential of the bristle: 1/2 k |x|^2 while it sticks,
-// with the constant slope mu f_n when it slips. Newton's method with an exact line search finds the minimum.
-// The f_n in H is that of the previous round. The energy of the solution never exceeds the energy of resting
-// in the overlap. Sources: Tripicchio et al., section 4.1, for the force; Kaufman et al. 2008 and Castro et
-// al. 2021 for contact as convex minimisation; Dahl 1968 for the bristle.
+// where M is the mass matrix, u0 the velocities without contact, v a point's relative velocity with the
+// normal part n.v and the tangential part v_t, `bend` the deflection of the point's friction bristle, and H
+// the bristle's potential: 1/2 k |x|^2 while it sticks, with the constant gradient mu f_n when it slips.
+// Newton's method with an exact line search finds the minimum. The normal force f_n in H is that of the
+// solution before (updateLimits()). The gradient of the potential is called the missing momentum. The energy
+// of the solution never exceeds the energy of resting in the overlap. Sources: Tripicchio et al.,
+// section 4.1, for the force; Kaufman et al. 2008 and Castro et al. 2021 for contact as convex minimisation;
+// Dahl 1968 for the bristle.
 #pragma once
 
 #include <span>
@@ -51,7 +54,7 @@ class PenaltyNewton {
   /// Updates the limits of friction from the present forces. Returns the greatest change, relative to the
   /// greatest limit.
   double updateLimits();
-  /// Writes forces and bends to the pairs' points.
+  /// Writes forces and bristle deflections (PenaltyPoint::bend_W) to the pairs' points.
   void finish();
 
  private:
@@ -67,7 +70,7 @@ class PenaltyNewton {
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
 
   /// Joints are modelled as dampers of velocity error, so stiff that they miss their target by a millionth.
-  /// At a limit the slope of the dampers' potential is constant, as for a bristle.
+  /// At a limit the gradient of the dampers' potential is constant, as for a bristle.
   void prepareJoints();
   [[nodiscard]] double jointImpulse(const JointRow& row, double stiffness_kg,
                                     const std::vector<Vec6>& u) const;

@@ -23,7 +23,7 @@ struct PenaltyPoint {
   double gap_m = 0;            ///< present gap plus tolerated_m
   double k_N_per_m = 0;        ///< stiffness of spring and bristle: stiffness per area times area
   double mu = 0;               ///< coefficient of friction
-  Vec3 bend_W = Vec3::Zero();  ///< bend of the bristle [m]: displacement of body 0 against body 1
+  Vec3 bend_W = Vec3::Zero();  ///< deflection of the bristle [m]: displacement of body 0 against body 1
   double f_n_N = 0;            ///< normal force at the end of the last step solved
   bool is_leader = false;      ///< represented its PointGroup in the last step solved
   double tolerated_m = 0;      ///< part of an initial overlap that is not pressed out yet
@@ -33,7 +33,7 @@ struct PenaltyPoint {
 struct PenaltyPair {
   const btCollisionObject* object[2] = {nullptr, nullptr};
   bool is_of_manifold = false;   ///< the points are in the order of a manifold's contacts
-  Mat3 R_W1 = Mat3::Identity();  ///< orientation of body 1 to which the bends refer
+  Mat3 R_W1 = Mat3::Identity();  ///< orientation of body 1 to which bend_W of all points refers
   std::vector<PenaltyPoint> points;
   double total_N = 0;     ///< normal force of all points
   double manifold_N = 0;  ///< normal force of the points that are contacts in a manifold

@@ -34,9 +34,9 @@ class PenaltyPatch {
   /// Updates the limits of friction from the normal forces at a twist. Raises `change` and `greatest` to the
   /// greatest change and limit [N].
   void updateLimits(const Vec6& twist, double& change, double& greatest);
-  /// Writes forces and bends at a twist to the pair's points. The points of a group share its force by their
-  /// stiffness and have the same bend, so that another grouping in the next step starts from the same forces
-  /// and bends.
+  /// Writes forces and bristle deflections at a twist to the pair's points. The points of a group share its
+  /// force in proportion to their stiffness and have the same deflection, so that another grouping in the
+  /// next step starts from the same forces and deflections.
   void finish(const Vec6& twist) const;
 
   [[nodiscard]] std::size_t pointCount() const { return points_.size(); }
@@ -69,7 +69,8 @@ class PenaltyPatch {
   std::array<std::vector<double>, 6> wrench_;  // wrench of a unit normal force, by component: r x n, n
   std::vector<double> gap_m_, limit_N_;
   Columns r_m_, bend_m_;
-  // At the end of the step, for the last twist evaluated: gaps, and bends without slip.
+  // At the end of the step, for the last twist evaluated: gaps, and bristle deflections
+  // without slip.
   mutable std::vector<double> end_m_;
   mutable Columns bent_m_;
 };

@@ -59,8 +59,8 @@ void ContactLoop::forEachCheck(std::span<const Vec6> push, double dt_s, const Vi
   }
 }
 
-// Takes the rows of contacts whose lever or normal turns during the step at the end poses of motion at the
-// present velocities.
+// Computes the rows of contacts whose lever or normal turns during the step, at the poses that the bodies
+// reach by the end of the step with their present velocities.
 void ContactLoop::linearise(const btContactSolverInfo& info) {
   missed_.clear();
   forEachCheck({}, info.m_timeStep,
@@ -71,7 +71,7 @@ void ContactLoop::linearise(const btContactSolverInfo& info) {
 // Returns true if contacts were added, so that the step must be solved again.
 bool ContactLoop::addMissed(const btContactSolverInfo& info, CheckRound round) {
   missed_.clear();
-  contacts.finish();  // a check asks which contacts carry load
+  contacts.finish();  // writes impulses, from which a check reads which contacts carry load
   forEachCheck(contacts.push(), info.m_timeStep, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
     check.findMissed(X_WB_end, round, missed_);
   });

@@ -239,7 +239,7 @@ SolveOutcome ContactNewton::solveRound(double near_m_s, int step_limit) {
     ++outcome.steps;
     if (convexStep()) continue;
     evaluate(u_, Slips::Follow, false, missing_);
-    outcome.is_converged = off_m_s_ < near_m_s / kAccuracyShare;  // balanced as well as rounding allows
+    outcome.is_converged = off_m_s_ < near_m_s / kAccuracyShare;  // rounding allows no smaller residual
     return outcome;
   }
 }

@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rigid contact with Coulomb friction, joints and motors of a whole island by Newton's method.
 //
-// A round solves, for the velocities u of the island's bodies,
+// The method is an outer iteration; one pass of it is called a round. A round solves, for the velocities u of
+// the island's bodies,
 //
 //     M (u - u0)  =  sum over contacts  J' P( p + (t n - v - mu |v_t| n) / s )
 //
-// where v is a contact's relative velocity, p the impulse found so far, t the least normal velocity, s the
-// contact's compliance [m/s per N s] and P the projection onto Coulomb's cone |x_t| <= mu x_n. The impulses
-// at the solution are the p of the next round. The compliance is only the weight of a proximal step
-// (method of multipliers) and leaves no error. Rounds begin soft, where Newton's method converges well, and
-// become stiffer. Sticking and slipping need no separate cases.
+// where M is the mass matrix, u0 the velocities without contact, J the contact's Jacobian, v = J u its
+// relative velocity with the tangential part v_t, n its normal, p its impulse from the round before, t the
+// least normal velocity that the contact allows, s the contact's compliance [m/s per N s] and P the
+// projection onto Coulomb's cone |x_t| <= mu x_n. The impulses P(...) at the round's solution become the
+// impulses p of the next round. The compliance is only the weight of a proximal step (method of multipliers)
+// and leaves no error. The first rounds use a great compliance, with which Newton's method converges well;
+// later rounds use a smaller one. Sticking and slipping need no separate cases.
 //
 // The term mu |v_t| is De Saxce's. Without this term a sliding contact would separate at the speed mu |v_t|.
-// The term mu
-// |v_t| makes the matrix of Newton's method unsymmetric, and the equation is not the condition of a minimum.
-// A step, or a share of it, is therefore accepted if it reduces the momentum that the equation misses. If no
-// share reduces this momentum, a step of the convex problem with the present value of the slip term is taken
-// instead; its exact line search makes progress from any point. A round that still does not converge is
-// repeated with more compliance.
+// The term makes the matrix of Newton's method unsymmetric, and the equation is not the condition of a
+// minimum. A Newton step, or a fraction of it, is therefore accepted if it reduces the residual of the
+// equation, a momentum, which is called the missing momentum. If no fraction reduces the residual, a step of
+// the convex problem with the present value of the slip term is taken instead; its exact line search makes
+// progress from any point. A round that still does not converge is repeated with more compliance.
 //
 // If the slip term were taken from the previous round, the rounds would converge linearly only: of 47
 // problems of ten brackets that lie on each other, 30 were solved in 60 steps, instead of 46.
@@ -51,7 +53,7 @@ class ContactNewton {
   /// A contact. Impulses act on body 0, in W.
   struct Point {
     Vec3 r, n;        ///< position relative to the patch's centre; normal
-    double mu;        ///< friction
+    double mu;        ///< coefficient of friction
     double W;         ///< inverse mass
     double softness;  ///< s
     double target;    ///< t [m/s], without the term of slip

@@ -128,7 +128,8 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
       contacts_.push_back(c);
       continue;
     }
-    // The impulse of a contact that is let go would make a worse start than zero; see start().
+    // A contact that no surface faces any more (is_let_go) starts from zero, since its old impulse would be a
+    // worse start; see start().
     if (!m.is_let_go) {
       c.p_n = same->p_n;
       c.p_t[0] = same->p_t[0];

@@ -50,8 +50,8 @@ struct RigidContact {
   btManifoldPoint* point = nullptr;
   const btCollisionObject* object[2] = {nullptr, nullptr};
   ContactRow normal, tangent[2];
-  double target_m_s = 0;  ///< least normal velocity
-  double push_m_s = 0;    ///< least normal velocity of the push
+  double target_m_s = 0;  ///< least normal velocity that the contact allows
+  double push_m_s = 0;    ///< normal velocity that the push must reach at least
   double gap_m = 0;
   double area_m2 = 0;  ///< area of a touching face that the contact represents
   double mu = 0;

@@ -9,7 +9,7 @@ namespace {
 constexpr double kRate_N_per_s = 6;  // growth of the push
 constexpr double kAlignSpeed_m_s = 25e-3;
 constexpr double kFree_s = 0.1;
-constexpr double kWobble_rad = 3e-3;  // amplitude, near the error of sight in rotation
+constexpr double kWobble_rad = 3e-3;  // amplitude, about see_error_rad
 constexpr double kWobble_rad_s = 20;  // three rotations per second
 
 /// Pushes and yields to side force and torque, with a small wobble against friction, until the part stops

@@ -6,12 +6,15 @@
 namespace vps::device {
 namespace {
 
-constexpr double kHover_s = 1;              // three fixations
-constexpr double kApproachNear_m = 1.5e-3;  // within ten errors of sight the part moves slowly: sight follows
-constexpr double kCare = 0.6;               // share of the insertion speed, as the part may hit an edge
+constexpr double kHover_s = 1;  // about three times fixation_s
+// Nearer to the target than this, the part moves slowly, so that the delayed pictures keep up with it. The
+// value is 15 times the default see_error_m.
+constexpr double kApproachNear_m = 1.5e-3;
+constexpr double kCare = 0.6;  // share of the insertion speed, as the part may hit an edge
 constexpr double kSlow_m_s = 3e-3;
-constexpr double kApproachTouch_s = 0.02;  // least contact: shorter than a tap, longer than a starting jerk
-// Nothing stops a part that is seen this many errors of sight beyond its target.
+constexpr double kApproachTouch_s = 0.02;  // duration of resistance that counts as contact: shorter than a
+                                           // tap, longer than the jerk at the start of a motion
+// If the part is seen farther beyond its target than this multiple of see_error_m, nothing stops it there.
 constexpr double kOvershoot = 4;
 
 /// Hovers until the part has been seen for long enough, then moves ahead until the part touches, slowly near

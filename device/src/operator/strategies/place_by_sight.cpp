@@ -11,9 +11,10 @@ constexpr double kGain_per_s = 1.2, kSpeedMost_m_s = 5e-3;
 constexpr double kCome_s = 2, kHold_s = 3;  // ten fixations at the target
 constexpr double kMost_s = 15;              // assumed: after this time a person leaves a part that sticks
 constexpr double kLeastError_m = 10e-6;     // assumed: a hand does not place a part more finely
-// The picture is 0.35 s late. A part at a distance g before its target moves at 1.2 g per second, and is seen
-// 0.42 g behind its position. Averaged over three seconds, while g falls as exp(-1.2 t), this lag is 0.11 g:
-// less than an error of sight where g is eight errors of sight.
+// The seen distance is 0.35 s late: see_delay_s, and the time constant kSoon_s in person.cpp. A part at a
+// distance g before its target moves at 1.2 g per second, and is seen 0.42 g behind its position. Averaged
+// over three seconds, while g falls as exp(-1.2 t), this lag is 0.11 g: less than see_error_m if g is at most
+// kHasCome times see_error_m.
 constexpr double kHasCome = 8;
 
 /// Holds the part where it is seen at its target, since no contact tells the position of the target. While

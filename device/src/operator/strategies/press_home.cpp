@@ -10,7 +10,8 @@ constexpr double kRamp_s = 0.2;  // duration of increasing and of decreasing the
 // Share of the press that is kept until release, so that the part stays seated.
 constexpr double kResidualShare = 0.15;
 constexpr double kPressSpeed_m_s = 80e-3;  // reaches the press within kRamp_s; push_N limits the force
-constexpr double kYields = 4;  // a part seen this many errors of sight beyond its target has yielded
+constexpr double kYields = 4;  // a part that is seen farther beyond its target than this multiple of
+                               // see_error_m has yielded
 
 /// Presses the part against its stop, and relaxes. Failed: the part is not seen near its target.
 class PressHome final : public Strategy {

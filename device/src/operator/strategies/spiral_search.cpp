@@ -7,9 +7,10 @@
 namespace vps::device {
 namespace {
 
-constexpr double kSpiralSpeed_m_s = 2.5e-3;   // speed along the spiral
-constexpr double kTurnMost_rad_s = 12;        // near the centre: two turns a second
-constexpr double kSlenderDropped_m = 0.3e-3;  // the edge of a slender part that sways rises and falls by less
+constexpr double kSpiralSpeed_m_s = 2.5e-3;  // speed along the spiral
+constexpr double kTurnMost_rad_s = 12;       // limit near the centre: two turns a second
+// Depth of a drop of a slender part. The edge of a slender part that sways rises and falls by less.
+constexpr double kSlenderDropped_m = 0.3e-3;
 /// Friction holds a part that is pressed on the surface, and a spring couples the hand to it. The hand feels
 /// where the part is, and moves ahead of the part until the part follows.
 constexpr double kLead_per_s = 15;

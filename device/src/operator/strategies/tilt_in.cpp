@@ -6,7 +6,7 @@ namespace {
 
 constexpr double kLean_s = 0.4, kUpright_s = 0.6, kDrop_s = 0.3;
 constexpr double kTiltInTouch_s = 0.02;
-constexpr double kShift_m = 0.35e-3;  // shift of the corner into the hole: three errors of sight
+constexpr double kShift_m = 0.35e-3;  // shift of the corner into the hole: 3.5 times the default see_error_m
 constexpr double kSlide_m = 1e-3;  // length of the slide, more than the distance of the corner from its wall
 constexpr double kSlide_m_s = 2.5e-3;
 constexpr double kCaught_N = 0.9;      // side force of a caught corner, more than the friction of the push

@@ -10,8 +10,9 @@ namespace {
 constexpr double kTurnBack_rad_s =
     1.2;                             // assumed: a fifth of a turn per second, as a person feels for a thread
 constexpr double kSag_m_s = 0.2e-3;  // a part that sinks no faster slides into place and does not drop
-constexpr double kDropLeast_m = 0.06e-3;    // least drop, more than the jerks of a handle with dry friction
-constexpr double kDropPerPitch = 1.0 / 16;  // half the axial play of a coarse 6H nut on a 6g bolt
+// Smallest sink that counts as a drop, more than the jerks of a handle with dry friction.
+constexpr double kDropLeast_m = 0.06e-3;
+constexpr double kDropPerPitch = 1.0 / 16;            // half the axial play of a coarse 6H nut on a 6g bolt
 constexpr double kSinks_m = 0.01e-3, kSunk_s = 0.15;  // the drop ends when the part sinks less in kSunk_s
 
 /// Turns against the thread, pressed lightly on the mouth of the other thread, until the part drops: the ends

@@ -9,7 +9,7 @@ namespace {
 constexpr double kSpeed_rad_s = 0.12;  // slow enough that the part drops within its clearance
 // Each sweep is longer by this angle than the last sweep to the same side.
 constexpr double kStep_rad = 0.035;
-// While it turns, the part is moved around a small circle, since the error of sight is of this size.
+// While it turns, the part is moved around a small circle, since its position is wrong by about see_error_m.
 constexpr double kCircle_m = 0.05e-3, kCircle_rad_s = 9;
 
 /// Presses the part lightly on the surface and turns it about the axis of insertion, to and fro and farther

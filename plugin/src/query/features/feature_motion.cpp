@@ -173,8 +173,9 @@ double curvature_per_m(const FeatureSet& part, const FeatureEdge& edge) {
 }
 
 // Upper bound of the distance from the place where edges cross at the end to the place at which a contact
-// held them. A row of the solver holds two straight lines on a straight path, so its error is the bend of the
-// path, and by the bend of curved edges along the slide.
+// held them. A row of the solver assumes straight edges on a straight path. Its error is therefore the
+// deviation of the path from its tangent plus the deviation of curved edges from their tangents along the
+// slide.
 double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
                 const MotionBetweenPoses& way, const FeatureContact& contact) {
   const double slide_m = std::max((start.inverse() * contact.p[0] - end.inverse() * contact.p[0]).norm(),
@@ -184,10 +185,10 @@ double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& st
   return 0.5 * travel_m(part0, part1, start, end) * way.turn_rad() + 0.5 * curvature * slide_m * slide_m;
 }
 
-// True if edges cross at the end of the step, but not at its start, and come nearer than the bend of the path
-// and of the edges. An edge that slides past the end of another may dip below this edge on a curved path,
-// although its contact holds it at the end. The sliding edge then enters the next edge from that end, deeper
-// than features are searched. Along a fine rim an edge passes several such ends in a step.
+// True if edges cross at the end of the step, but not at its start, and come nearer than bendOf_m(). An edge
+// that slides past the end of another may dip below this edge on a curved path, although its contact holds it
+// at the end. The sliding edge then enters the next edge from that end, deeper than features are searched.
+// Along a fine rim an edge passes several such ends in a step.
 bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
                       const Pose& start, const Pose& end, Met& met, FeatureContact& contact) {
   FeatureContact before;

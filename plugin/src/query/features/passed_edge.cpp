@@ -11,7 +11,7 @@ namespace vps {
 
 namespace {
 
-// The multiple of its displacement after which the corner passes a plane.
+// The multiple of its displacement after which a corner at height_m above a plane passes the plane.
 double passes(double height_m, double way_m) {
   return way_m < 0 ? std::max(height_m, 0.0) / -way_m : std::numeric_limits<double>::infinity();
 }

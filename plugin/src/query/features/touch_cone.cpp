@@ -24,7 +24,8 @@ class Allowed {
     for (std::size_t i = 0; i < rays_.size(); ++i)
       for (std::size_t j = i + 1; j < rays_.size(); ++j) {
         const double dot = rays_[i].dot(rays_[j]);
-        if (!(1 + dot > kRoundingShare) || !(1 - dot > kRoundingShare)) continue;  // circles around one line
+        // The circles around parallel rays do not cross.
+        if (!(1 + dot > kRoundingShare) || !(1 - dot > kRoundingShare)) continue;
         const Vec3 middle = least_ / (1 + dot) * (rays_[i] + rays_[j]);
         const double rest = 1 - middle.squaredNorm();
         if (rest < 0) continue;

@@ -30,7 +30,7 @@ Face faceOf(const Mesh& mesh, const Pose& X_MP, const HalfEdge& e) {
   return {n.normalized(), corner[(e.side + 2) % 3], hasArea(corner[0], corner[1], corner[2])};
 }
 
-// Marks ends as joined where two edges, and no third, meet in a line.
+// Marks the ends of two edges as joined where exactly these two edges meet and one continues the other.
 void joinEnds(std::vector<EdgeEnd>& ends, std::vector<EdgeSegment>& segments) {
   forEachJoint(ends, [&](const EdgeEnd& a, const EdgeEnd& b) {
     const double cos = -a.away.dot(b.away);
@@ -103,7 +103,7 @@ class CrossingSearch {
   }
 
  private:
-  // False if at no pose of the tube CrossingTest takes the segments for a crossing. A turn by t moves unit
+  // False if CrossingTest would reject the segments at every pose of the tube. A turn by t moves unit
   // vectors and their product by up to t.
   [[nodiscard]] bool mayCross(const EdgeSegment& s0, const EdgeSegment& s1) const {
     const Vec3 d0 = (s0.to - s0.from).normalized(), d1 = X_01_.from.R * (s1.to - s1.from).normalized();

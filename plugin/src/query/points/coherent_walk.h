@@ -33,9 +33,10 @@ class CoherentWalk {
         turn_norm_(largestStretch(turn_)),
         reader_(reading, Reader{this, consume}) {}
 
-  /// Call before the first group of a pose. If the last cutoff was smaller, its thresholds are too late by at
-  /// most the difference of the cutoffs, which is added to the odometers. If the last cutoff was larger, the
-  /// thresholds are too early, which only costs readings.
+  /// Call before the first group of a pose. A leaf is read again when the odometer of its group passes the
+  /// leaf's threshold. If the last cutoff was smaller, the thresholds are too great by at most the difference
+  /// of the cutoffs, which is added to the odometers. If the last cutoff was larger, the thresholds are too
+  /// small, which only costs readings.
   static void begin(QueryMemory& memory, const MapReading& reading, double cutoff,
                     const Pose& X_MP) noexcept {
     const double last = std::exchange(memory.cutoff_, cutoff);

@@ -7,9 +7,9 @@
 
 namespace vps {
 
-/// The reading of a lane [quanta] at its exact position: extrapolated along the trilinear slope from the step
-/// to which the point was rounded. Without this extrapolation a stiff contact would show the steps of 1/16384
-/// voxel (15 nm at 0.25 mm).
+/// The field's value at the exact position of a lane's point [quanta]. The read itself rounds positions to
+/// steps of 1/16384 voxel (15 nm at 0.25 mm); this function extrapolates its value with the gradient of the
+/// trilinear interpolation. Without the extrapolation a stiff contact would show the steps.
 /// @param p_P  position of the lane's point
 double readingAt(const ReadLeaf& leaf, int lane, const GridPose& motion, const Vec3& p_P) noexcept;
 

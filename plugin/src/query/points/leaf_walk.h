@@ -40,8 +40,8 @@ struct ReadLeaf {
   [[nodiscard]] float value(int lane) const { return batch.value[kLanes * slot + lane]; }
 };
 
-/// True if every point under a block lies where all cells are the outer constant, so that it reads as the
-/// band.
+/// True if every point under a block lies where all cells are the outer constant, so that the field's value
+/// at the point is the band's width.
 inline bool isFarOutside(const MapReading& reading, const ShellBlock& block) noexcept {
   const FieldView& f = reading.field;
   const double reach = block.radius_m / f.voxel_m + 1;  // as in read()

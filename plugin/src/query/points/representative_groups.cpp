@@ -13,8 +13,9 @@ namespace vps {
 namespace {
 
 constexpr double kEdgeShare = 0.25;  // share of a tile's size; assumed
-// Share of the spread of a tile's points. The share bounds the bend in directions in which the points do not
-// spread. The recorded motion of a peg depends on this share
+// Regularisation (ridge regression) in fitted(), as a share of the trace of the points' second moment. It
+// bounds Group::bend in directions in which the points do not spread. The recorded motion of a peg depends on
+// this share
 // (Replay.TheCommittedRecordingRunsAgainBitForBit).
 constexpr double kRidge = 1e-3;
 
@@ -135,8 +136,9 @@ RepresentativePoints::Group RepresentativePoints::fitted(std::span<const std::ui
     group.center += shell_->points[id] / count;
     group.inward += shell_->inward[id] / count;
   }
-  // Least squares: bend = sum(dn dp^T) sum(dp dp^T)^-1. A flat group does not determine the derivative along
-  // its own normal; the ridge sets that derivative to zero.
+  // Least squares for the derivative of the inward normal n by the position p: bend = sum(dn dp^T)
+  // sum(dp dp^T)^-1. The points of a flat group do not determine the derivative along the group's normal. The
+  // regularisation with kRidge makes this derivative zero.
   Mat3 places = Mat3::Zero(), turns = Mat3::Zero();
   for (const std::uint32_t id : ids) {
     const Vec3 dp = shell_->points[id] - group.center;

@@ -79,7 +79,7 @@ class RepresentativePoints::Search {
     Area area;
     bool has_slope = false;
     Vec3 center;
-    Eigen::Vector3f slope;  ///< slope of the change of the gap in the step [quanta/m]
+    Eigen::Vector3f slope;  ///< gradient, by position, of the gap's change in the step [quanta/m]
     float steepest = 0;
   };
 

@@ -18,7 +18,8 @@ namespace vps::scenes::import {
 /// called five times a second, so that it can end the child by an exception however long a library computes;
 /// the child ignores Ctrl-C, which is for this process. A child that exceeds the settings' limits of memory
 /// and time is ended, and a LoadError names the limit. Other effects of read() on memory stay in the child.
-/// Without fork(), and under AddressSanitizer in a program with threads, runs read() in this process.
+/// Without ImportSettings::in_own_process, without fork(), and under AddressSanitizer in a program with
+/// threads, runs read() in this process.
 ///
 /// The child is a fork of this process with the calling thread alone. For a program with more threads POSIX
 /// promises little, but with glibc malloc and stdio work in the child. Malloc and stdio suffice if `read`

@@ -191,21 +191,6 @@ class Copies {
   std::vector<Copy> copies_;
 };
 
-void makeInCopies(const std::vector<std::size_t>& order, const Make& make, const std::function<void()>& done,
-                  std::size_t count, Results& results) {
-  if (count < 2 || order.size() < 2 || !mayFork()) return;
-  SharedCounter counter;
-  if (!counter.isThere()) return;
-  Copies copies;
-  for (std::size_t i = 0; i < std::min(count, order.size()); ++i) copies.start(counter, order, make);
-  copies.collect(results, done);
-}
-
-#else
-
-void makeInCopies(const std::vector<std::size_t>&, const Make&, const std::function<void()>&, std::size_t,
-                  Results&) {}
-
 #endif
 
 }  // namespace
@@ -225,7 +210,15 @@ bool mayFork() {
 std::vector<std::string> madeInCopies(const std::vector<std::size_t>& order, const Make& make,
                                       const std::function<void()>& done, std::size_t copies) {
   Results results(order.size());
-  makeInCopies(order, make, done, copies > 0 ? copies : std::thread::hardware_concurrency(), results);
+#if defined(__unix__)
+  const std::size_t count =
+      std::min<std::size_t>(copies > 0 ? copies : std::thread::hardware_concurrency(), order.size());
+  if (SharedCounter counter; count > 1 && mayFork() && counter.isThere()) {
+    Copies running;
+    for (std::size_t i = 0; i < count; ++i) running.start(counter, order, make);
+    running.collect(results, done);
+  }
+#endif
   std::vector<std::string> out(order.size());
   for (const std::size_t i : order) {
     if (results[i]) {

@@ -43,9 +43,7 @@ void readAnew(const std::string& file, const FileFormat& format, const ImportSet
   const auto read = [&](const Progress& inner) { return row.read(file, format, settings, inner); };
   std::optional<import::RawCad> raw;
   if (row.read_here != nullptr) raw = row.read_here(file, settings);
-  if (!raw)
-    raw = settings.in_own_process ? import::inOwnProcess(file, row.library, settings, progress, read)
-                                  : read(progress);
+  if (!raw) raw = import::inOwnProcess(file, row.library, settings, progress, read);
   cad.states_unit = raw->states_unit;
   cad.missing = raw->missing;
   if (settings.part_per == PartPer::Object) raw->open_shapes = import::Shapes::AreParts;

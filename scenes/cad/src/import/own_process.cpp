@@ -71,49 +71,6 @@ class Writer {
   Stream stream_;
 };
 
-class Reader {
- public:
-  /// @param wait called five times a second while no message arrives; may throw
-  Reader(Stream stream, std::function<void()> wait) : stream_(std::move(stream)), wait_(std::move(wait)) {
-    ready_.resize(kBuffer);
-  }
-  void operator()(void* data, std::size_t size) {
-    for (auto* to = static_cast<char*>(data); size > 0;) {
-      if (next_ == end_) fill();
-      const std::size_t count = std::min(size, end_ - next_);
-      std::memcpy(to, ready_.data() + next_, count);
-      next_ += count;
-      to += count;
-      size -= count;
-    }
-  }
-
- private:
-  static constexpr std::size_t kBuffer = 65536;
-
-  void fill() {
-    const int from = ::fileno(stream_.get());
-    pollfd waiting{from, POLLIN, 0};
-    for (;;) {
-      const int ready = ::poll(&waiting, 1, kLook_ms);
-      if (ready > 0) break;
-      if (ready < 0 && errno != EINTR) throw Broken();
-      wait_();
-    }
-    ssize_t count = 0;
-    do count = ::read(from, ready_.data(), ready_.size());
-    while (count < 0 && errno == EINTR);
-    if (count <= 0) throw Broken();
-    next_ = 0;
-    end_ = static_cast<std::size_t>(count);
-  }
-
-  Stream stream_;
-  std::function<void()> wait_;
-  std::vector<char> ready_;
-  std::size_t next_ = 0, end_ = 0;
-};
-
 /// In the child: makes a crash silent, fast and harmless to the parent.
 void prepareToCrash() {
   // The child writes no core file and has none of the program's signal handlers.
@@ -280,6 +237,47 @@ class Watch {
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now(), next_memory_ = begun_;
 };
 
+class Reader {
+ public:
+  /// @param watch looks at the child five times a second while no message arrives
+  Reader(Stream stream, Watch& watch) : stream_(std::move(stream)), watch_(watch) { ready_.resize(kBuffer); }
+  void operator()(void* data, std::size_t size) {
+    for (auto* to = static_cast<char*>(data); size > 0;) {
+      if (next_ == end_) fill();
+      const std::size_t count = std::min(size, end_ - next_);
+      std::memcpy(to, ready_.data() + next_, count);
+      next_ += count;
+      to += count;
+      size -= count;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBuffer = 65536;
+
+  void fill() {
+    const int from = ::fileno(stream_.get());
+    pollfd waiting{from, POLLIN, 0};
+    for (;;) {
+      const int ready = ::poll(&waiting, 1, kLook_ms);
+      if (ready > 0) break;
+      if (ready < 0 && errno != EINTR) throw Broken();
+      watch_.look();
+    }
+    ssize_t count = 0;
+    do count = ::read(from, ready_.data(), ready_.size());
+    while (count < 0 && errno == EINTR);
+    if (count <= 0) throw Broken();
+    next_ = 0;
+    end_ = static_cast<std::size_t>(count);
+  }
+
+  Stream stream_;
+  Watch& watch_;
+  std::vector<char> ready_;
+  std::size_t next_ = 0, end_ = 0;
+};
+
 RawCad receive(Reader& in, Watch& watch) {
   for (;;) {
     auto message = Message::Failed;
@@ -302,7 +300,7 @@ RawCad receive(Reader& in, Watch& watch) {
 
 RawCad inOwnProcess(const std::string& file, const std::string& library, const ImportSettings& limits,
                     const Progress& progress, const std::function<RawCad(const Progress&)>& read) {
-  if (!mayFork()) return read(progress);
+  if (!limits.in_own_process || !mayFork()) return read(progress);
   // A child that another thread forks meanwhile would keep this pipe open, and hide a crash until that child
   // ends.
   static std::mutex one_at_a_time;
@@ -323,7 +321,7 @@ RawCad inOwnProcess(const std::string& file, const std::string& library, const I
   lock.unlock();
   Child child(id);
   Watch watch(child, file, limits, progress);
-  Reader in(std::move(from_child), [&] { watch.look(); });
+  Reader in(std::move(from_child), watch);
   try {
     return receive(in, watch);
   } catch (const Broken&) {

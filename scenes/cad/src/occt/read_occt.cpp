@@ -89,7 +89,7 @@ double errorOf(const Tessellation& made, const ImportSettings& settings) {
                                                    : made.deviation_m;
 }
 
-/// Visits the leaves of an assembly's tree and meshes each product once.
+/// The tree of an assembly: its products are triangulated once each, and its leaves become parts.
 class Tree {
  public:
   Tree(const Handle(TDocStd_Document) & document, const ImportSettings& settings, const Progress& progress,
@@ -98,14 +98,18 @@ class Tree {
         colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
         settings_(settings),
         progress_(progress),
-        cad_(cad) {}
+        cad_(cad) {
+    shapes_->GetFreeShapes(roots_);
+    for (const TDF_Label& root : roots_) collect(root, nameOf(root));
+  }
 
-  void walk() {
-    TDF_LabelSequence roots;
-    shapes_->GetFreeShapes(roots);
-    for (const TDF_Label& root : roots) collect(root, nameOf(root));
-    triangulateAll();
-    for (const TDF_Label& root : roots) {
+  /// The shapes of all products.
+  [[nodiscard]] const std::vector<TopoDS_Shape>& shapes() const { return all_shapes_; }
+
+  /// Adds the leaves as parts. @param tessellated  the tessellations of shapes()
+  void addParts(TessellatedShapes tessellated) {
+    tessellated_ = std::move(tessellated);
+    for (const TDF_Label& root : roots_) {
       // A single shape may have a location.
       const Color* none = nullptr;
       visit(root, {}, Eigen::Affine3d::Identity(), none);
@@ -151,13 +155,6 @@ class Tree {
     for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product)))
       all_shapes_.push_back(shape);
     shape_end_[it->first] = all_shapes_.size();
-  }
-
-  void triangulateAll() {
-    tessellated_ =
-        tessellateAll(all_shapes_, settings_, 1 / cad_.unit_m, [&](std::size_t done, std::size_t all) {
-          if (progress_) progress_("meshing", double(done) / double(all));
-        });
   }
 
   /// Name and assemblies that an instance inherits.
@@ -312,6 +309,7 @@ class Tree {
   const ImportSettings& settings_;
   const Progress& progress_;
   RawCad& cad_;
+  TDF_LabelSequence roots_;
   std::map<std::string, std::vector<Piece>> products_;
   UniqueNames instances_;
   std::vector<TopoDS_Shape> all_shapes_;
@@ -379,45 +377,39 @@ void transfer(Reader& reader, const std::string& file, const FileFormat& format,
   if (!lost.left_out.empty()) cad.warnOfMissing(lost.left_out);
 }
 
-RawCad read(const std::string& file, const FileFormat& format, const ImportSettings& settings,
-            const Progress& progress) {
-  RawCad cad;
-  cad.unit_m = 1e-3;  // both readers convert to mm
-  if (format.id == CadFormat::Brep) {
-    cad.unit_m = unitOf(file, format, settings);
-    TopoDS_Shape shape;
-    if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull()) {
-      throw unreadable(file, format, "its syntax is wrong");
-    }
-    const TessellatedShapes found =
-        tessellateAll(pieces(shape), settings, 1 / cad.unit_m, [&](std::size_t done, std::size_t all) {
-          if (progress) progress("meshing", double(done) / double(all));
-        });
-    for (const TessellatedShape& one : found.shapes) {
-      const Tessellation& tessellation = found.tessellations[one.number];
-      RawPart part;
-      part.mesh = tessellation.mesh;
-      part.X_WP = one.X_ST;
-      part.deviation_m = errorOf(tessellation, settings);
-      part.note = inWords(tessellation, settings);
-      cad.parts.push_back(std::move(part));
-    }
-    return cad;
+void readBrep(const std::string& file, const FileFormat& format, const ImportSettings& settings,
+              const Progress& progress, RawCad& cad) {
+  cad.unit_m = unitOf(file, format, settings);
+  TopoDS_Shape shape;
+  if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull())
+    throw unreadable(file, format, "its syntax is wrong");
+  const TessellatedShapes found = tessellateAll(pieces(shape), settings, 1 / cad.unit_m, progress);
+  for (const TessellatedShape& one : found.shapes) {
+    const Tessellation& tessellation = found.tessellations[one.number];
+    RawPart part;
+    part.mesh = tessellation.mesh;
+    part.X_WP = one.X_ST;
+    part.deviation_m = errorOf(tessellation, settings);
+    part.note = inWords(tessellation, settings);
+    cad.parts.push_back(std::move(part));
   }
-  Document document;
+}
+
+/// Transfers a STEP or IGES file into the document, in millimetres.
+void readDocument(const std::string& file, const FileFormat& format, const ImportSettings& settings,
+                  const Handle(TDocStd_Document) & document, RawCad& cad) {
+  cad.unit_m = 1e-3;
   if (format.id == CadFormat::Step) {
     STEPCAFControl_Controller::Init();  // defines the parameter that is set below
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     STEPCAFControl_Reader reader;
-    transfer(reader, file, format, document.get(), settings, cad);
+    transfer(reader, file, format, document, settings, cad);
   } else {
     IGESControl_Controller::Init();
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     IGESCAFControl_Reader reader;
-    transfer(reader, file, format, document.get(), settings, cad);
+    transfer(reader, file, format, document, settings, cad);
   }
-  Tree(document.get(), settings, progress, cad).walk();
-  return cad;
 }
 
 }  // namespace
@@ -432,7 +424,16 @@ RawCad readOcct(const std::string& file, const FileFormat& format, const ImportS
   const std::lock_guard lock(one_at_a_time);
   const Quiet quiet;
   try {
-    return read(file, format, settings, progress);
+    RawCad cad;
+    if (format.id == CadFormat::Brep) {
+      readBrep(file, format, settings, progress, cad);
+      return cad;
+    }
+    Document document;
+    readDocument(file, format, settings, document.get(), cad);
+    Tree tree(document.get(), settings, progress, cad);
+    tree.addParts(tessellateAll(tree.shapes(), settings, 1 / cad.unit_m, progress));
+    return cad;
   } catch (const LoadError&) {
     throw;
   } catch (const Standard_Failure& e) {

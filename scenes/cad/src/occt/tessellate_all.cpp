@@ -203,8 +203,7 @@ std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape) {
 }
 
 TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const ImportSettings& settings,
-                                double units_per_m,
-                                const std::function<void(std::size_t, std::size_t)>& done) {
+                                double units_per_m, const Progress& progress) {
   constexpr double kSame_m = 1e-9;
   Different different(kSame_m * units_per_m);
   TessellatedShapes out;
@@ -212,7 +211,8 @@ TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const I
   const std::vector<TopoDS_Shape>& own = different.shapes();
   std::size_t count = 0;
   const auto oneMore = [&] {
-    if (done) done(++count, own.size());
+    ++count;
+    if (progress) progress("meshing", double(count) / double(own.size()));
   };
   const auto make = [&](std::size_t i) { return tessellate(own[i], settings, units_per_m); };
   if (!settings.in_own_process) {  // Open CASCADE then uses threads itself

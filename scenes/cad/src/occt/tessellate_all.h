@@ -3,13 +3,13 @@
 // cores.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include <Eigen/Geometry>
 #include <TopoDS_Shape.hxx>
 
 #include "occt/tessellation.h"
+#include "vps/errors.h"
 
 namespace vps::scenes::import {
 
@@ -29,10 +29,8 @@ struct TessellatedShapes {
 
 /// Calls tessellate() for each shape. A shape that is a rigid copy of an earlier one within a nanometre gets
 /// the earlier shape's triangles, so that later code finds equal parts equal.
-/// @param done  called with the number of different shapes that are triangulated so far, and their total
-/// number
+/// @param progress  called as "meshing" after each different shape
 TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const ImportSettings& settings,
-                                double units_per_m,
-                                const std::function<void(std::size_t, std::size_t)>& done);
+                                double units_per_m, const Progress& progress);
 
 }  // namespace vps::scenes::import

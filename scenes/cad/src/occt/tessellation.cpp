@@ -230,12 +230,6 @@ bool isClosedShape(const TopoDS_Shape& shape) {
   return has_shell;
 }
 
-Tessellation triangulated(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m,
-                          Inner inner, IMeshTools_MeshAlgoType algorithm = IMeshTools_MeshAlgoType_DEFAULT) {
-  triangulate(shape, settings, units_per_m, inner, algorithm);
-  return compared(shape, settings, units_per_m);
-}
-
 /// The shape after healing the faces that are not `is_good`.
 TopoDS_Shape withFacesHealed(const TopoDS_Shape& shape, const Tessellation& tessellation) {
   const Handle(ShapeBuild_ReShape) changes = new ShapeBuild_ReShape;
@@ -302,11 +296,13 @@ Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, doub
   Tessellation best = compared(shape, settings, units_per_m);
   if (algorithm != IMeshTools_MeshAlgoType_DEFAULT) {
     if (best.isTrusted() && best.folded == 0) return best;
-    best = triangulated(shape, settings, units_per_m, Inner::None);
+    triangulate(shape, settings, units_per_m, Inner::None);
+    best = compared(shape, settings, units_per_m);
   }
   const auto tryThat = [&](const TopoDS_Shape& other, Inner inner) {
     if (best.isTrusted()) return;
-    Tessellation next = triangulated(other, settings, units_per_m, inner);
+    triangulate(other, settings, units_per_m, inner);
+    Tessellation next = compared(other, settings, units_per_m);
     // Finer triangles without fewer faults only make the search for contacts slower.
     const bool is_better = next.faults() < best.faults() ||
                            (next.faults() == best.faults() && next.deviation_m < 0.5 * best.deviation_m);

@@ -44,6 +44,24 @@ const char* toText(FitKind kind) {
   return "";
 }
 
+std::string stateWords(const CheckedPair& pair) {
+  const std::string state = pair.is_uncertain ? "not known" : toText(pair.state);
+  return pair.state == PairState::Clash && pair.is_allowed ? state + " (allowed)" : state;
+}
+
+std::string volumeWords(const CheckedPair& pair) {
+  constexpr double kPerCubicMetre = 1e9;
+  std::array<char, 64> text{};
+  if (pair.volume_error_m3 < pair.interference_volume_m3) {
+    std::snprintf(text.data(), text.size(), "%.4f", kPerCubicMetre * pair.interference_volume_m3);
+    return text.data();
+  }
+  const double most_m3 = pair.interference_volume_m3 + pair.volume_error_m3;
+  if (!(most_m3 > 0)) return "not known";
+  std::snprintf(text.data(), text.size(), "<= %.4g", kPerCubicMetre * most_m3);
+  return text.data();
+}
+
 std::string standardOf(const CheckedFit& fit) {
   if (fit.kind != FitKind::Thread || !fit.thread.empty()) return fit.iso_286 + fit.thread;
   std::array<char, 80> text{};

@@ -101,7 +101,7 @@ DenseBase baseOf(const HapticMessage& m) noexcept;
 DenseBase baseOf(const PhysicsMessage& m) noexcept;
 
 /// Packs the three smaller components of the quaternion, 20 bits each, and the index of the largest one: 62
-/// bits in total. Accurate to 5e-6 rad; n bits less multiply the error by 2^n.
+/// bits in total. Accurate to 5e-6 rad with 20 bits; each bit fewer doubles the error.
 /// @param bits  bits per component, at most 20
 std::uint64_t packedRotation(const Mat3& R, unsigned bits = 20);
 /// Unpacks a rotation; empty if no rotation has this packed value.

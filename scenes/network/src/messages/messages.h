@@ -237,7 +237,7 @@ class MessageWriter {
     return numbers_[static_cast<std::size_t>(kind)];
   }
   [[nodiscard]] std::uint64_t sender() const noexcept { return sender_; }
-  /// From now on states are written with all bits; readers accept both forms.
+  /// From now on states are written as with WireForm::Exact; readers accept both number formats.
   void writeExactStates() noexcept { has_exact_states_ = true; }
   /// The next states are sent whole, for a reader that has not received a whole state.
   void startAnew() noexcept { dense_haptic_ = dense_physics_ = {}; }
@@ -260,9 +260,9 @@ class MessageReader {
     sender_ = sender;
     forget();
   }
-  /// Returns Good if `message` was filled; otherwise it is unchanged. Reads messages in all forms. A dense
-  /// state lacks some values, for which `message` must hold the previously read state. Allocates for
-  /// snapshots only.
+  /// Returns Good if `message` was filled; otherwise it is unchanged. Reads both number formats of WireForm,
+  /// and of the compact format both whole and dense states. A dense state lacks some values, for which
+  /// `message` must hold the previously read state. Allocates for snapshots only.
   template <typename Message>
   Reading read(std::string_view bytes, Message& message) noexcept;
 

@@ -7,15 +7,16 @@ namespace vps::scenes {
 
 namespace {
 
-/// Quantisation steps of a component.
+/// Quantisation of a component of a unit quaternion: the integer that represents x is middle + scale * x,
+/// rounded.
 struct Steps {
   explicit Steps(unsigned bits)
       : mask((std::uint64_t{1} << bits) - 1),
         middle(1 << (bits - 1U)),
         scale((middle - 1) * 1.41421356237309515) {}
   std::uint64_t mask;
-  double middle;  ///< step that stands for zero
-  double scale;   ///< the three smaller components are at most 1/sqrt(2)
+  double middle;  ///< integer that represents zero
+  double scale;   ///< integers per unit; the greatest value of a smaller component is 1/sqrt(2)
 };
 
 }  // namespace
@@ -47,7 +48,7 @@ std::optional<Mat3> unpackedRotation(std::uint64_t packed, unsigned bits) {
     q[i] = (static_cast<double>(packed >> shift & steps.mask) - steps.middle) / steps.scale;
     rest -= q[i] * q[i];
   }
-  constexpr double kLeast = 0.249;  // the largest of four components is at least 1/2
+  constexpr double kLeast = 0.249;  // The square of the largest component is at least 1/4, less rounding.
   if (!(rest >= kLeast)) return {};
   q[largest] = std::sqrt(rest);
   return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();

@@ -38,8 +38,9 @@ ContactProbes::ContactProbes(const PlacedSurface& a, const PlacedSurface& b, dou
 }
 
 bool ContactProbes::areStopped(const Vec3& d_W) const {
-  constexpr double kWays[] = {8, 80};  // distances in units of the allowed depth: far enough to exceed the
-                                       // allowed depth at a slope of an eighth
+  // Distances of the motion in units of the allowed depth. A point at the other surface is then deeper than
+  // twice the allowed depth if the motion's slope against that surface is above 1/4, or above 1/40.
+  constexpr double kWays[] = {8, 80};
   return std::ranges::any_of(kWays, [&](double way) {
     return std::ranges::any_of(sides_, [&](const Side& side) {
       const Pose X_OW = side.other->X_WP.inverse();
@@ -55,8 +56,9 @@ namespace {
 
 /// Work limit for one motion of one pair, about ten seconds. A bolt of 227,717 facets needs 2 million units.
 constexpr std::uint64_t kMostWork = 10'000'000;
-/// Work limit for the test whether a motion needs an allowance. A motion that needs an allowance is stopped
-/// early; other motions take long if faces slide along each other.
+/// Work limit for the test whether a motion needs more overlap of the parts than drawn
+/// (PairMotions::allowanceOf()). The search of a motion that needs more overlap ends early, because the
+/// motion is stopped; the search of another motion takes long if faces slide along each other.
 constexpr std::uint64_t kMostExactWork = 300'000;
 constexpr double kFall_m = 1e-3;  // assumed: a part that sinks by less than kFall_m counts as carried
 

@@ -16,15 +16,17 @@
 
 namespace vps::scenes {
 
-/// Points on the surfaces of two parts where they touch. A straight motion is stopped if such a point, moved
-/// a little along the motion, is deeper in the other part than allowed. The converse does not hold: if no
-/// point is deeper than allowed, a motion search has to decide. A query of 64 points takes 0.2 ms, and a
-/// motion search along flush curved faces 10 to 100 ms.
+/// Points on the surfaces of two parts where the parts touch, at most 32 points per part. A straight motion
+/// is stopped if such a point, moved a little along the motion, lies deeper in the other part than twice the
+/// allowed overlap. The converse does not hold: if no point lies so deep, a motion search has to decide. A
+/// query of 64 points takes 0.2 ms, and a motion search along flush curved faces 10 to 100 ms.
 class ContactProbes {
  public:
   ContactProbes() = default;
+  /// @param allowed_m  depth by which the parts may overlap; points at most so far from the other surface are
+  ///   taken
   ContactProbes(const PlacedSurface& a, const PlacedSurface& b, double allowed_m);
-  /// Whether a is stopped immediately when it moves along d.
+  /// True if part a is stopped soon after it starts to move along d. False does not mean that a is free.
   [[nodiscard]] bool areStopped(const Vec3& d_W) const;
 
  private:
@@ -64,7 +66,8 @@ class PairMotions {
   [[nodiscard]] const std::vector<PlacedSurface>& parts() const { return parts_; }
   [[nodiscard]] const Directions& directions() const { return directions_; }
   [[nodiscard]] std::size_t up() const { return up_; }
-  /// Likely directions of a part: up, the world's axes, the part's axes, and the axes of its fits.
+  /// Likely directions of a part: up, the world's axes, the part's axes, the axes of its fits and, for a key,
+  /// the direction across its axis and its fit's axis; each with its opposite.
   [[nodiscard]] const std::vector<std::size_t>& axesOf(std::size_t part) const { return axes_[part]; }
   /// Directions to try after the likely directions: the vertices of a subdivided icosahedron.
   [[nodiscard]] const std::vector<std::size_t>& around() const { return around_; }
@@ -75,16 +78,18 @@ class PairMotions {
 
   /// Whether the held part stops a part that moves away in a direction. Results are cached. Thread-safe.
   bool stops(std::size_t held, std::size_t part, std::size_t direction) const;
-  /// The allowance for meshes [m], beyond the drawn overlap, that a motion that is not stopped may need; 0 if
-  /// the motion needs no allowance. A motion needs an allowance if it is stopped when facets may be no deeper
-  /// in each other than at the part's placement. The allowance is also 0 if the work limit ends the test.
-  /// Results are cached. Thread-safe.
+  /// The overlap in excess of the drawn overlap [m] that a motion may need because the meshes are inexact,
+  /// for a motion that stops() does not call stopped. The result is 0 if the motion is free even
+  /// when facets may be no deeper in each other than at the part's placement; otherwise it is the whole
+  /// excess that stops() allows. The result is also 0 if the work limit ends the test. Results are cached.
+  /// Thread-safe.
   double allowanceOf(std::size_t held, std::size_t part, std::size_t direction) const;
-  /// The answers of stops() so far, and the answers of an earlier plan of the same parts. A motion is encoded
-  /// as its slot(), then a bit for the answer and a bit that is set if the motion was too long to follow.
+  /// The answers of stops() so far, and the answers of an earlier plan of the same parts. Each answer is a
+  /// number: slot() of the motion in the bits from 2 up; bit 0 is set if the part is stopped; bit 1 is set if
+  /// the search ended at the work limit.
   [[nodiscard]] std::vector<std::uint64_t> found() const;
   void take(const std::vector<std::uint64_t>& found);
-  /// Number of motions of stops() that were too long to follow to their end.
+  /// Number of motions whose search in stops() ended at the work limit.
   [[nodiscard]] std::size_t cutMotions() const { return cut_; }
   /// The parts that keep `part` from falling by more than 1 mm, ascending.
   [[nodiscard]] const std::vector<std::size_t>& carriersOf(std::size_t part) const { return carriers_[part]; }
@@ -101,7 +106,7 @@ class PairMotions {
   using Pair = std::pair<std::size_t, std::size_t>;
   struct Near {
     double crossing_m = 0;   ///< depth by which the two parts may overlap
-    double allowance_m = 0;  ///< share of crossing_m that exceeds the drawn overlap
+    double allowance_m = 0;  ///< part of crossing_m in excess of the drawn overlap
     std::unique_ptr<const MotionSearch> search;
     ContactProbes probes;
     /// Whether the second part stops a straight motion of the first part.
@@ -124,8 +129,8 @@ class PairMotions {
   std::vector<std::vector<std::size_t>> carriers_, carried_;
   double leave_m_ = 0;
   mutable std::atomic<std::size_t> cut_ = 0;
-  /// By slot(): whether the part is stopped. The map known_ contains only pairs whose boxes do not decide the
-  /// answer.
+  /// Cached answer of stops(), by slot(). The map known_ has no entry for a motion during which the boxes of
+  /// both parts do not overlap at all.
   struct Answer {
     bool is_stopped = false, is_cut = false;
   };

@@ -7,7 +7,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// If safety keeps the clutch from moving, the run continues after this multiple of the clutch's time.
+/// If the safety chain keeps the clutch from moving, the run continues after this multiple of clutch_s.
 /// assumed.
 constexpr double kWaitLimit = 10;
 
@@ -24,7 +24,8 @@ bool ClutchWork::advanceFor(double seconds, const std::function<bool()>& advance
   return true;
 }
 
-// The report shows the clutch one tick late, so the wait lasts at least the clutch's time.
+// The driver's report (driver_.last()) shows the clutch ratio one tick late and may still have the ratio of
+// an earlier motion of the clutch. The wait therefore lasts at least clutch_s, the duration of one motion.
 bool ClutchWork::waitForClutch(double ratio, const std::function<bool()>& advance) const {
   const double clutch_s = driver_.settings().clutch_s;
   if (!advanceFor(clutch_s, advance)) return false;

@@ -10,13 +10,14 @@
 
 namespace vps::scenes {
 
-/// The segments of a step's path.
+/// The segments of a step's path. An index point is a pose of the path at which one segment ends and the
+/// next begins: there the device is clutched and recentred.
 ///
-///   path      start ----1----2---------- target       1: way point, 2: index point
+///   path      start ----1----2---------- target       1: way point of the step, 2: index point
 ///   handle    |--------------|
 ///                            |---------------|         each segment fits into the workspace
 struct PathSegments {
-  std::vector<Pose> way_points;           ///< X_WP: the step's own way points and the index points, in order
+  std::vector<Pose> way_points;  ///< X_WP of the part: the step's way points and the index points, in order
   std::vector<std::size_t> index_points;  ///< indices of the way points that are index points
   std::vector<Pose> X_DH_start;  ///< pose of the handle at each segment's start; one more than index_points
 };

@@ -75,9 +75,11 @@ bool isOf(const std::string& part, const std::string& body, const std::vector<sc
   return part == body;
 }
 
-std::string textOf(const scenes::ImportedCad& cad, const std::vector<std::string>& read,
-                   const std::vector<scenes::PartGroup>& groups, const std::vector<ImportedPartAnswer>& parts,
-                   const std::vector<scenes::Fastener>& fasteners) {
+/// The text of scene.toml: parts with their poses and files, groups, and the proposed steps.
+std::string importedSceneText(const scenes::ImportedCad& cad, const std::vector<std::string>& read,
+                              const ImportAnswer& answer) {
+  const std::vector<scenes::PartGroup>& groups = answer.groups;
+  const std::vector<scenes::Fastener>& fasteners = answer.fasteners;
   scenes::Scene scene = scenes::sceneOf(cad);
   for (std::size_t i = 0, next = 0; i < scene.parts.size() && next < fasteners.size(); ++i)
     if (scene.parts[i].part.name == fasteners[next].part) scene.parts[i].fastener = fasteners[next++].words;
@@ -85,12 +87,11 @@ std::string textOf(const scenes::ImportedCad& cad, const std::vector<std::string
   uniteGroups(united, groups);
   const Proposal proposal = propose(united.parts);
   for (scenes::ScenePart& part : scene.parts) part.is_fixed = isOf(part.part.name, proposal.fixed, groups);
-  std::string from;
-  for (const std::string& file : read) from += (from.empty() ? "" : ", ") + scenes::tomlText(file);
   std::vector<std::string> files;
-  for (const ImportedPartAnswer& part : parts) files.push_back(part.file);
+  for (const ImportedPartAnswer& part : answer.parts) files.push_back(part.file);
   std::string out = sceneText(
-      scene, files, "From " + from + R"(. Lengths and meshes are in metres; write "5mm" for millimetres.)");
+      scene, files,
+      "From " + listedFiles(read) + R"(. Lengths and meshes are in metres; write "5mm" for millimetres.)");
   out += "\n";
   for (const scenes::PartGroup& group : groups) out += groupText(group);
   if (!proposal.steps.empty())
@@ -103,6 +104,32 @@ std::string textOf(const scenes::ImportedCad& cad, const std::vector<std::string
   return out;
 }
 
+/// Writes a mesh file for each part.
+std::vector<ImportedPartAnswer> writeParts(const scenes::ImportedCad& cad, const ImportArguments& given,
+                                           const OutputFolder& out) {
+  std::vector<ImportedPartAnswer> written;
+  std::set<std::string> taken;
+  for (const scenes::ImportedPart& part : cad.parts) {
+    throwIfStopped();
+    const std::string file = partFileName(part.name, meshExtension(part.mesh, part.face_colors), taken);
+    requireNotRead((fs::path(given.out) / file).string(), given.files);
+    out.write(file, meshBytes(part.mesh, part.face_colors));
+    written.push_back({part.name, file, part.mesh.triangles.size(), checkMesh(part.mesh).isClosed(),
+                       bounds(part.mesh).size()});
+  }
+  return written;
+}
+
+std::string writtenPartTable(const std::vector<ImportedPartAnswer>& parts) {
+  Table table({"<part", "triangles", "<closed", "size [mm]", "<file"});
+  for (const ImportedPartAnswer& part : parts)
+    table.add({part.name, std::to_string(part.triangles), part.is_closed ? "yes" : "no",
+               fixed(part.size_m.x() * 1e3, 2) + " x " + fixed(part.size_m.y() * 1e3, 2) + " x " +
+                   fixed(part.size_m.z() * 1e3, 2),
+               part.file});
+  return table.text();
+}
+
 int runImport(const ImportArguments& given) {
   for (const std::string& file : given.files) requireCadFile(file);
   const scenes::ImportSettings settings = importSettingsFrom(given.cad, kMostTriangles);
@@ -112,6 +139,7 @@ int runImport(const ImportArguments& given) {
                     "has a scene.toml already; choose another folder, or replace it with --force");
   OutputFolder out(given.out);
   OutputFile json(given.json, given.files);
+
   ProgressBar bar;
   scenes::ImportedCad cad = importedCad(given.files, settings, given.cad, bar.progress());
   const std::vector<scenes::Fastener> fasteners =
@@ -120,26 +148,12 @@ int runImport(const ImportArguments& given) {
   const std::vector<scenes::PartGroup> groups = groupsOf(cad, given.cad);
 
   ImportAnswer answer{cad.file, cad.format, {}, groups, fasteners, cad.warnings};
-  std::set<std::string> taken;
-  Table table({"<part", "triangles", "<closed", "size [mm]", "<file"});
-  for (const scenes::ImportedPart& part : cad.parts) {
-    throwIfStopped();
-    const ImportedPartAnswer row{
-        part.name, partFileName(part.name, meshExtension(part.mesh, part.face_colors), taken),
-        part.mesh.triangles.size(), checkMesh(part.mesh).isClosed(), bounds(part.mesh).size()};
-    requireNotRead((fs::path(given.out) / row.file).string(), given.files);
-    out.write(row.file, meshBytes(part.mesh, part.face_colors));
-    table.add({row.name, std::to_string(row.triangles), row.is_closed ? "yes" : "no",
-               fixed(row.size_m.x() * 1e3, 2) + " x " + fixed(row.size_m.y() * 1e3, 2) + " x " +
-                   fixed(row.size_m.z() * 1e3, 2),
-               row.file});
-    answer.parts.push_back(row);
-  }
-  out.write("scene.toml", textOf(cad, given.files, groups, answer.parts, fasteners));
+  answer.parts = writeParts(cad, given, out);
+  out.write("scene.toml", importedSceneText(cad, given.files, answer));
   out.commit();
   json.write(toJson(answer));
 
-  std::fputs((table.text() + fastenerText(fasteners)).c_str(), stdout);
+  std::fputs((writtenPartTable(answer.parts) + fastenerText(fasteners)).c_str(), stdout);
   for (const std::string& warning : cad.warnings)
     warn(given.files.size() > 1 ? warning : cad.file + ": " + warning);
   std::printf("%zu parts from %s; scene: %s/scene.toml\n", cad.parts.size(), cad.format.c_str(),

@@ -184,8 +184,8 @@ std::function<int()> addView(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::IsMember(modes));
   command.add_flag("--quad-buffer", window.has_stereo_buffers,
-                   "give each eye a buffer of its own, if the driver supports it (shutter glasses); only in "
-                   "the mode mono");
+                   "give each eye a buffer of its own, if the driver supports it (shutter glasses); for "
+                   "--stereo mono, since the pictures of the other stereo modes hold both eyes already");
   command
       .add_option("--display", given->display,
                   "display file (TOML): the window shows the picture of each screen for each viewer (the "

@@ -234,8 +234,10 @@ int runDevice(const DeviceArguments& given) {
 
 std::function<int()> addDevice(CLI::App& command) {
   const auto given = std::make_shared<DeviceArguments>();
-  CLI::Option* characterise = command.add_flag("--characterise", given->is_characterise,
-                                               "compute Table 1 and figure 5 of the paper for the dual arm");
+  CLI::Option* characterise =
+      command.add_flag("--characterise", given->is_characterise,
+                       "compute Table 1 and figure 5 of the paper by Tripicchio, Avizzano and "
+                       "Bergamasco for the dual arm");
   command.add_flag("--list", given->is_list, "print the device kinds that a scene may name in [device] kind")
       ->excludes(characterise);
   command.add_option("--parameters", given->parameters, "parameters that replace the built-in ones")

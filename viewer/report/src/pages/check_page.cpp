@@ -9,6 +9,8 @@
 #include "files/html.h"
 #include "pages/pictures.h"
 #include "pages/svg.h"
+#include "vps_scenes/fits/check_fields.h"
+#include "vps_viewer/report/columns.h"
 #include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
@@ -17,65 +19,49 @@ namespace {
 
 using html::Cell;
 using html::format;
-using scenes::PairState;
 
-std::string place(const Vec3& p_W) {
-  std::string out;
-  for (int i = 0; i < 3; ++i) out.append(i > 0 ? ", " : "").append(format(1e3 * p_W[i], "%.2f"));
-  return out;
+/// A table with the columns that the field table gives the page.
+template <class Struct, class Rows>
+std::string fieldTable(const std::vector<Struct>& structs, const Rows& fields) {
+  const auto inPageUnits = [](std::string heading) {  // the terminal writes "um" and "mm3"
+    if (const std::size_t at = heading.find("[um]"); at != std::string::npos) heading.replace(at, 4, "[µm]");
+    if (const std::size_t at = heading.find("mm3"); at != std::string::npos) heading.replace(at, 3, "mm³");
+    return heading;
+  };
+  std::vector<std::string> header;
+  for (const ColumnCell& heading : columnHeadings(fields, Medium::Page))
+    header.push_back(inPageUnits(heading.text));
+  const WriteNumber write = [](double value, int digits) {
+    return format(value, ("%." + std::to_string(digits) + "f").c_str());
+  };
+  std::vector<std::vector<Cell>> rows;
+  for (const Struct& of : structs) {
+    std::vector<Cell>& row = rows.emplace_back();
+    for (const ColumnCell& cell : columnCells(of, fields, Medium::Page, write)) {
+      std::string css_class = cell.is_left ? "" : "n";
+      if (cell.is_bad) css_class += css_class.empty() ? "bad" : " bad";
+      row.push_back({escapeHtml(cell.text), css_class});
+    }
+  }
+  return html::table(header, rows);
 }
 
 std::string pairs(const scenes::CheckResult& result) {
-  std::vector<std::vector<Cell>> rows;
-  for (const scenes::CheckedPair& pair : result.pairs) {
-    const bool is_clash = pair.state >= PairState::PressFit;
-    rows.push_back({{escapeHtml(pair.a), ""},
-                    {escapeHtml(pair.b), ""},
-                    {std::string(pair.is_uncertain ? "not known" : toText(pair.state)) +
-                         (pair.state == PairState::Clash && pair.is_allowed ? " (allowed)" : ""),
-                     pair.isClash() ? "bad" : ""},
-                    {is_clash ? "" : micrometres(pair.clearance_m), "n"},
-                    {pair.interference_depth_m > 0 ? micrometres(pair.interference_depth_m) : "", "n"},
-                    {is_clash ? escapeHtml(volumeWords(pair)) : "", "n"},
-                    {micrometres(pair.error_m), "n"},
-                    {place(pair.at_W), "n"}});
-  }
   return std::string(
              "<h2>Pairs near each other</h2>\n<p>As drawn. Surfaces that touch to within the error are in "
              "contact, which is no clash. The error includes the distance between the meshes and the curved "
              "faces that they approximate; ")
              .append(kOverlapMeaning)
              .append(".</p>\n") +
-         html::table({"part", "and", "state", "clearance [µm]", "overlap [µm]", "volume [mm³]", "error [µm]",
-                      "at [mm]"},
-                     rows);
-}
-
-const char* kindOf(scenes::FitKind kind) {
-  if (kind == scenes::FitKind::Thread) return "thread";
-  return kind == scenes::FitKind::Shaft ? "round" : "two parallel faces";
+         fieldTable(result.pairs, scenes::kCheckedPairFields);
 }
 
 std::string fits(const scenes::CheckResult& result) {
-  std::vector<std::vector<Cell>> rows;
-  for (const scenes::CheckedFit& fit : result.fits)
-    rows.push_back({{kindOf(fit.kind), ""},
-                    {escapeHtml(fit.shaft), ""},
-                    {escapeHtml(fit.bore), ""},
-                    {format(1e3 * fit.shaft_m, "%.4f"), "n"},
-                    {format(1e3 * fit.bore_m, "%.4f"), "n"},
-                    {micrometres(fit.diametral_clearance_m), fit.diametral_clearance_m < 0 ? "n bad" : "n"},
-                    {micrometres(fit.error_m), "n"},
-                    {format(1e3 * fit.length_m, "%.2f"), "n"},
-                    {escapeHtml(standardOf(fit)), ""}});
   return "<h2>Fits</h2>\n<p>Fits are found on the meshes, whose corners lie on the true faces. The sizes of "
          "a thread are its major diameters; its play along the axis measures the clearance of its flanks. "
-         "The last column names "
-         "a "
-         "common fit of ISO 286 in whose zones both sizes lie, or a thread of ISO 262.</p>\n" +
-         html::table({"kind", "inner part", "outer part", "inner [mm]", "outer [mm]", "clearance [µm]",
-                      "error [µm]", "length [mm]", "standard"},
-                     rows);
+         "The last column names a common fit of ISO 286 in whose zones both sizes lie, or a thread of ISO "
+         "262.</p>\n" +
+         fieldTable(result.fits, scenes::kCheckedFitFields);
 }
 
 std::string pressFits(const scenes::CheckResult& result) {

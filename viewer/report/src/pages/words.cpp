@@ -167,13 +167,6 @@ std::string assemblyWords(const scenes::CheckResult& result) {
   return freed.empty() ? freed : "can be assembled: " + freed;
 }
 
-std::string volumeWords(const scenes::CheckedPair& pair) {
-  if (pair.volume_error_m3 < pair.interference_volume_m3)
-    return html::format(1e9 * pair.interference_volume_m3, "%.4f");
-  const double most_m3 = pair.interference_volume_m3 + pair.volume_error_m3;
-  return most_m3 > 0 ? "<= " + html::format(1e9 * most_m3, "%.4g") : "not known";
-}
-
 std::string playWords(double way, double error, double usual, double scale, const char* form) {
   if (std::isinf(way)) return "free";
   const std::string words = html::format(scale * way, form);

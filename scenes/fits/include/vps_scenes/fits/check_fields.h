@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The numbers of a check as JSON and CSV show them.
+// The numbers of a check: their keys in JSON, their lines in CSV, and their columns on the terminal and on
+// the page.
 #pragma once
 
+#include <array>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "vps_scenes/fits/check_types.h"
@@ -9,23 +13,52 @@
 
 namespace vps::scenes {
 
+/// Whether the parts overlap by more than contact allows.
+inline bool isOverlapping(const CheckedPair& pair) {
+  return pair.state >= PairState::PressFit;
+}
+
 inline constexpr auto kCheckedPairFields = std::make_tuple(
-    field("a", &CheckedPair::a, "name of the pair's first part"),
-    field("b", &CheckedPair::b, "name of the pair's second part"),
-    field("state", &CheckedPair::state,
-          "`apart`, `contact` (within the error), `press fit` (a declared overlap) or `clash` (an "
-          "overlap that is not declared)"),
-    field("clearance_m", &CheckedPair::clearance_m,
-          "least distance of the surfaces; 0 where the meshes overlap"),
-    field(
-        "interference_depth_m", &CheckedPair::interference_depth_m,
-        "greatest depth of a point of one part's surface below the other part's surface, or diameter of the "
-        "greatest ball inside both parts, whichever is greater"),
-    field("interference_volume_m3", &CheckedPair::interference_volume_m3, "shared volume of a clash"),
+    shown<CheckedPair>(field("a", &CheckedPair::a, "name of the pair's first part"),
+                       {.column = {.heading = "<part"}}),
+    shown<CheckedPair>(field("b", &CheckedPair::b, "name of the pair's second part"),
+                       {.column = {.heading = "<and"}}),
+    shown<CheckedPair>(
+        field("state", &CheckedPair::state,
+              "`apart`, `contact` (within the error), `press fit` (a declared overlap) or `clash` (an "
+              "overlap that is not declared)"),
+        {.column = {.heading = "<state",
+                    .text = stateWords,
+                    .is_bad = [](const CheckedPair& pair) { return pair.isClash(); }}}),
+    shown<CheckedPair>(field("clearance_m", &CheckedPair::clearance_m,
+                             "least distance of the surfaces; 0 where the meshes overlap"),
+                       {.column = {.heading = "clearance [um]",
+                                   .per_SI = 1e6,
+                                   .is_shown = [](const CheckedPair& pair) { return !isOverlapping(pair); }},
+                        .csv_place = 1,
+                        .error = "error_m"}),
+    shown<CheckedPair>(
+        field("interference_depth_m", &CheckedPair::interference_depth_m,
+              "greatest depth of a point of one part's surface below the other part's surface, or diameter "
+              "of the greatest ball inside both parts, whichever is greater"),
+        {.column = {.heading = "overlap [um]",
+                    .per_SI = 1e6,
+                    .is_shown = [](const CheckedPair& pair) { return pair.interference_depth_m > 0; }},
+         .csv_place = 1,
+         .error = "error_m"}),
+    shown<CheckedPair>(
+        field("interference_volume_m3", &CheckedPair::interference_volume_m3, "shared volume of a clash"),
+        {.column = {.heading = "volume [mm3]", .is_shown = isOverlapping, .text = volumeWords},
+         .csv_place = 1,
+         .error = "volume_error_m3"}),
     field("volume_error_m3", &CheckedPair::volume_error_m3, "bound of the error of `interference_volume_m3`"),
-    field("error_m", &CheckedPair::error_m,
-          "bound of the error of clearance and depth: chords of the meshes, rounding, search"),
-    field("at_m", &CheckedPair::at_W, "the deepest point, or the middle of the nearest points, in the world"),
+    shown<CheckedPair>(field("error_m", &CheckedPair::error_m,
+                             "bound of the error of clearance and depth: chords of the meshes, rounding, "
+                             "search"),
+                       {.column = {.heading = "error [um]", .per_SI = 1e6}}),
+    shown<CheckedPair>(field("at_m", &CheckedPair::at_W,
+                             "the deepest point, or the middle of the nearest points, in the world"),
+                       {.column = {.heading = "at [mm]", .per_SI = 1e3}}),
     field("is_allowed", &CheckedPair::is_allowed, "the scene allows the overlap (`allow_overlap`)"),
     field("is_uncertain", &CheckedPair::is_uncertain,
           "the check cannot decide whether the parts overlap, because one of them has a surface that "
@@ -36,12 +69,17 @@ static_assert(coversAllMembers<CheckedPair>(kCheckedPairFields));
 inline constexpr auto kPressFields = std::make_tuple(
     field("hub_m", &CheckedPress::hub_m, "outer diameter of the largest ring of material around the bore"),
     field("hole_m", &CheckedPress::hole_m, "diameter of the shaft's hole; 0: no hole"),
-    field("pressure_Pa", &CheckedPress::pressure_Pa, "pressure in the joint, for the interference as drawn"),
+    shown<CheckedPress>(field("pressure_Pa", &CheckedPress::pressure_Pa,
+                              "pressure in the joint, for the interference as drawn"),
+                        {.csv_place = 2}),
     field("hub_stress_Pa", &CheckedPress::hub_stress_Pa, "greatest equivalent stress in the hub (Tresca)"),
-    field("force_N", &CheckedPress::force_N,
-          "force that presses the shaft into the bore along the fit's whole length, or out of the bore"),
-    field("declared_force_N", &CheckedPress::declared_force_N,
-          "force that presses the shaft into the bore, for the declared interference"),
+    shown<CheckedPress>(
+        field("force_N", &CheckedPress::force_N,
+              "force that presses the shaft into the bore along the fit's whole length, or out of the bore"),
+        {.csv_place = 2}),
+    shown<CheckedPress>(field("declared_force_N", &CheckedPress::declared_force_N,
+                              "force that presses the shaft into the bore, for the declared interference"),
+                        {.csv_place = 2}),
     field("shaft_modulus_Pa", &CheckedPress::shaft_modulus_Pa,
           "Young's modulus of the shaft, from the scene or assumed"),
     field("hub_modulus_Pa", &CheckedPress::hub_modulus_Pa,
@@ -50,26 +88,52 @@ inline constexpr auto kPressFields = std::make_tuple(
           "coefficient of friction in the joint, from the scene or assumed"));
 static_assert(coversAllMembers<CheckedPress>(kPressFields));
 
+/// The fit's kind by the shape of its faces.
+inline std::string kindInWords(const CheckedFit& fit) {
+  if (fit.kind == FitKind::Thread) return "thread";
+  return fit.kind == FitKind::Shaft ? "round" : "two parallel faces";
+}
+
 inline constexpr auto kCheckedFitFields = std::make_tuple(
-    field("kind", &CheckedFit::kind,
-          "`shaft` in a bore, `key` (two parallel faces between two others) or `thread`"),
-    field("shaft", &CheckedFit::shaft, "name of the inner part"),
-    field("bore", &CheckedFit::bore, "name of the outer part"),
+    shown<CheckedFit>(
+        field("kind", &CheckedFit::kind,
+              "`shaft` in a bore, `key` (two parallel faces between two others) or `thread`"),
+        {.column = {.heading = "<fit"}, .page_column = {.heading = "<kind", .text = kindInWords}}),
+    shown<CheckedFit>(field("shaft", &CheckedFit::shaft, "name of the inner part"),
+                      {.column = {.heading = "<of"}, .page_column = {.heading = "<inner part"}}),
+    shown<CheckedFit>(field("bore", &CheckedFit::bore, "name of the outer part"),
+                      {.column = {.heading = "<in"}, .page_column = {.heading = "<outer part"}}),
     field("axis", &CheckedFit::axis_W, "axis of the cylinders, or normal of the key's faces, in the world"),
     field("at_m", &CheckedFit::at_W, "the middle of the fit, in the world"),
-    field("shaft_m", &CheckedFit::shaft_m,
-          "diameter of the shaft, major diameter of the screw, or width of the key"),
-    field("bore_m", &CheckedFit::bore_m,
-          "diameter of the bore, major diameter of the nut, or width of the slot"),
+    shown<CheckedFit>(field("shaft_m", &CheckedFit::shaft_m,
+                            "diameter of the shaft, major diameter of the screw, or width of the key"),
+                      {.column = {.heading = "size [mm]", .per_SI = 1e3, .digits = 3},
+                       .page_column = {.heading = "inner [mm]", .per_SI = 1e3, .digits = 4},
+                       .csv_place = 3,
+                       .error = "error_m"}),
+    shown<CheckedFit>(field("bore_m", &CheckedFit::bore_m,
+                            "diameter of the bore, major diameter of the nut, or width of the slot"),
+                      {.page_column = {.heading = "outer [mm]", .per_SI = 1e3, .digits = 4},
+                       .csv_place = 3,
+                       .error = "error_m"}),
     field("along", &CheckedFit::along_W, "direction of the fit's length, in the world"),
-    field("length_m", &CheckedFit::length_m, "length of the fit"),
-    field("diametral_clearance_m", &CheckedFit::diametral_clearance_m,
-          "bore minus shaft; negative: interference"),
+    shown<CheckedFit>(field("length_m", &CheckedFit::length_m, "length of the fit"),
+                      {.column = {.heading = "length [mm]", .per_SI = 1e3, .place = 1}}),
+    shown<CheckedFit>(
+        field("diametral_clearance_m", &CheckedFit::diametral_clearance_m,
+              "bore minus shaft; negative: interference"),
+        {.column = {.heading = "clearance [um]",
+                    .per_SI = 1e6,
+                    .is_bad = [](const CheckedFit& fit) { return fit.diametral_clearance_m < 0; }},
+         .csv_place = 1,
+         .error = "error_m"}),
     field("offset_m", &CheckedFit::offset_m, "greatest distance of the axes of shaft and bore"),
-    field("error_m", &CheckedFit::error_m,
-          "bound of the clearance's error, from the corners' distance to the faces"),
-    field("iso_286", &CheckedFit::iso_286,
-          "common fit of ISO 286 whose zones contain both sizes; empty: none"),
+    shown<CheckedFit>(field("error_m", &CheckedFit::error_m,
+                            "bound of the clearance's error, from the corners' distance to the faces"),
+                      {.column = {.heading = "error [um]", .per_SI = 1e6}}),
+    shown<CheckedFit>(field("iso_286", &CheckedFit::iso_286,
+                            "common fit of ISO 286 whose zones contain both sizes; empty: none"),
+                      {.column = {.heading = "<standard", .place = 1, .text = standardOf}}),
     field("lead_m", &CheckedFit::lead_m,
           "lead of a thread, the axial advance in one turn; negative: left-hand"),
     field("starts", &CheckedFit::starts, "number of starts of a thread"),
@@ -77,15 +141,23 @@ inline constexpr auto kCheckedFitFields = std::make_tuple(
     group("press", &CheckedFit::press, kPressFields));
 static_assert(coversAllMembers<CheckedFit>(kCheckedFitFields));
 
+/// The directions of Play::m and Play::rad, in their order.
+inline constexpr std::array<std::string_view, 6> kPlayDirections = {"+x", "-x", "+y", "-y", "+z", "-z"};
+
 inline constexpr auto kPlayFields = std::make_tuple(
-    field(
-        "play_m", [](const Play& play) { return std::vector<double>(play.m.begin(), play.m.end()); },
-        "how far the part can move along +x, -x, +y, -y, +z, -z of `play_axes`; null: nothing stops the "
-        "part"),
-    field(
-        "play_rad", [](const Play& play) { return std::vector<double>(play.rad.begin(), play.rad.end()); },
-        "how far the part can turn about the axes of `play_axes` through `play_center_m`; null: a whole "
-        "turn"),
+    shown<Play>(
+        field(
+            "play_m", [](const Play& play) { return std::vector<double>(play.m.begin(), play.m.end()); },
+            "how far the part can move along +x, -x, +y, -y, +z, -z of `play_axes`; null: nothing stops the "
+            "part"),
+        {.csv_place = 1, .error = "play_errors_m", .elements = kPlayDirections}),
+    shown<Play>(
+        field(
+            "play_rad",
+            [](const Play& play) { return std::vector<double>(play.rad.begin(), play.rad.end()); },
+            "how far the part can turn about the axes of `play_axes` through `play_center_m`; null: a whole "
+            "turn"),
+        {.csv_place = 1, .error = "play_errors_rad", .elements = kPlayDirections}),
     field(
         "play_errors_m",
         [](const Play& play) { return std::vector<double>(play.error_m.begin(), play.error_m.end()); },

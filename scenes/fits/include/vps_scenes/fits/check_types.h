@@ -99,6 +99,13 @@ struct CheckedPair {
   [[nodiscard]] bool isBeyondContact() const { return interference_depth_m > error_m + kContactDepth_m; }
 };
 
+/// The state in words: "apart", "clash (allowed)", or "not known" for an uncertain pair.
+VPS_SCENES_API std::string stateWords(const CheckedPair& pair);
+
+/// The volume that two parts share, in cubic millimetres: "7.9840"; "<= 12.3" if the error is as large as the
+/// volume; "not known" if no piece of the volume's surface was found.
+VPS_SCENES_API std::string volumeWords(const CheckedPair& pair);
+
 enum class FitKind {
   Shaft,   ///< a round shaft in a bore
   Key,     ///< two parallel faces of one part between two parallel faces of another part

@@ -50,7 +50,9 @@ inline constexpr auto kStepMarginFields = std::make_tuple(
     field("growth_fails_m", &StepMargin::growth_fails_m,
           "least offset with which the step fails; null: the step succeeds with all offsets that were tried"),
     field("fails_as", &StepMargin::fails_as,
-          "verdict with `growth_fails_m`: `blocked` (by geometry) or `not_shown`; `fits`: no offset failed"),
+          "verdict of the step at the offset `growth_fails_m`: `blocked`: geometry rules the step out; "
+          "`not_shown`: the virtual hand failed, but geometry does not rule the step out; `fits`: no offset "
+          "failed"),
     field("fails_why", &StepMargin::fails_why, "reason of the verdict `fails_as`"),
     field("growth_bound_m", &StepMargin::growth_bound_m, "greatest offset that geometry alone allows"),
     field("position_m", &StepMargin::position_m,

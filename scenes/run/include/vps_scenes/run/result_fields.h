@@ -200,7 +200,9 @@ inline constexpr auto kRealTimeHapticFields = std::make_tuple(
     field("faults", &RealTimeResult::faults, "faults of the safety chain"),
     field("has_priority", &RealTimeResult::has_priority, "the thread has real-time priority"),
     field("has_locked_memory", &RealTimeResult::has_locked_memory, "the memory is locked"),
-    field("warnings", &RealTimeResult::warnings, "what the system refused, with the remedy"));
+    field("warnings", &RealTimeResult::warnings,
+          "requests for real time (priority, locked memory) that the operating system refused, each with its "
+          "remedy"));
 
 inline constexpr auto kRealTimePhysicsFields = std::make_tuple(
     group("late_us", &RealTimeResult::physics_late, kPercentiles, "time from a step's due time to its start"),

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -60,6 +61,39 @@ struct Field {
   FieldTraits traits;
 };
 
+/// A column of a table for readers, on the terminal or on a page.
+template <class Struct>
+struct TableColumn {
+  std::string_view heading = {};  ///< "<part", "clearance [um]"; '<': aligned left; empty: no column
+  double per_SI = 1;              ///< units of the heading per SI unit
+  int digits = 2;                 ///< digits after the decimal point
+  /// Columns are ordered by their places; columns with equal places keep the order of their rows.
+  int place = 0;
+  bool (*is_shown)(const Struct&) = nullptr;     ///< false: the cell is empty; null: always shown
+  std::string (*text)(const Struct&) = nullptr;  ///< text of the cell; null: the value itself
+  bool (*is_bad)(const Struct&) = nullptr;       ///< the page marks the cell as a fault; null: never
+};
+
+/// How a number appears outside of JSON.
+template <class Struct>
+struct Shown {
+  TableColumn<Struct> column = {};
+  TableColumn<Struct> page_column = {};  ///< the column on a page, where it differs; no heading: as `column`
+  /// Place of the number's line in a CSV file with a line for each number, ordered as TableColumn::place; 0:
+  /// no line.
+  int csv_place = 0;
+  /// Key of the row in the same table that bounds the number's error; empty: the CSV file states no bound.
+  std::string_view error = {};
+  /// Names of the elements of a list, each of which has a line of its own in the CSV file.
+  std::span<const std::string_view> elements = {};
+};
+
+/// A field that tables for readers or a CSV file show as well.
+template <class Struct, class Get>
+struct ShownField : Field<Get> {
+  Shown<Struct> shown;
+};
+
 /// An object within the struct's object; with an empty key, its rows are rows of the outer object. The object
 /// is left out when `get` returns a null pointer or an empty optional.
 template <class Get, class Rows>
@@ -94,6 +128,11 @@ struct Key {
 template <class Get>
 constexpr Field<Get> field(std::string_view key, Get get, std::string_view meaning, FieldTraits traits = {}) {
   return {key, get, meaning, traits};
+}
+/// A field with the columns and lines of `how`: shown<CheckedPair>(field(...), {...}).
+template <class Struct, class Get>
+constexpr ShownField<Struct, Get> shown(const Field<Get>& of, const Shown<Struct>& how) {
+  return {of, how};
 }
 template <class Get, class Rows>
 constexpr Group<Get, Rows> group(std::string_view key, Get get, Rows rows, std::string_view meaning = {}) {

@@ -2,8 +2,14 @@
 // CSV (RFC 4180), and field tables as CSV.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <limits>
 #include <string>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "vps/pose.h"
@@ -92,6 +98,78 @@ std::string toCsv(const std::vector<Struct>& structs, const Rows& rows) {
     scenes::forEachRow(rows, [&](const auto& row) { addRowCells(cells, of, row); });
     out += csvLine(cells);
   }
+  return out;
+}
+
+// --- Field tables as lines: one line for each number of scenes::ShownField that has a place in the file.
+
+struct CsvNumber {
+  int place = 0;            ///< Shown::csv_place
+  std::size_t element = 0;  ///< in a list of numbers
+  std::string object;       ///< key of the nested object that holds the number; empty: the struct itself
+  std::string quantity;     ///< the number's key, and the name of its element: "play_m +x"
+  double value = 0;
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no bound is stated
+};
+
+/// The numbers of a field as a list; empty if the field holds no number.
+template <class T>
+std::vector<double> asNumbers(const T& value) {
+  if constexpr (std::is_same_v<T, std::vector<double>>)
+    return value;
+  else if constexpr (std::is_arithmetic_v<T>)
+    return {static_cast<double>(value)};
+  else
+    return {};
+}
+
+/// The numbers of the row with this key; empty if no row has it.
+template <class Struct, class Rows>
+std::vector<double> numbersWithKey(const Struct& of, const Rows& rows, std::string_view key) {
+  std::vector<double> found;
+  scenes::forEachRow(rows, [&](const auto& row) {
+    if constexpr (requires { row.traits; })
+      if (row.key == key) found = asNumbers(std::invoke(row.get, of));
+  });
+  return found;
+}
+
+template <class Struct, class Rows>
+void addCsvNumbers(std::vector<CsvNumber>& out, const std::string& object, const Struct& of,
+                   const Rows& rows) {
+  scenes::forEachRow(rows, [&](const auto& row) {
+    if constexpr (requires { row.shown; }) {
+      if (row.shown.csv_place == 0) return;
+      const std::vector<double> values = asNumbers(std::invoke(row.get, of)),
+                                errors = numbersWithKey(of, rows, row.shown.error);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        CsvNumber& number = out.emplace_back();
+        number.place = row.shown.csv_place;
+        number.element = i;
+        number.object = object;
+        number.quantity = siKey(row);
+        if (!row.shown.elements.empty()) number.quantity.append(" ").append(row.shown.elements[i]);
+        number.value = values[i];
+        if (i < errors.size()) number.error = errors[i];
+      }
+    } else if constexpr (requires {
+                           row.rows;
+                           row.meaning;
+                         }) {  // a group
+      if (const auto* inner = scenes::pointerTo(std::invoke(row.get, of)))
+        addCsvNumbers(out, std::string(row.key), *inner, row.rows);
+    }
+  });
+}
+
+/// The numbers of a struct that have a line in a CSV file, in the order of the lines: by place, and within
+/// one place by element, then as the rows.
+template <class Struct, class Rows>
+std::vector<CsvNumber> csvNumbers(const Struct& of, const Rows& rows) {
+  std::vector<CsvNumber> out;
+  addCsvNumbers(out, "", of, rows);
+  std::ranges::stable_sort(out, {},
+                           [](const CsvNumber& number) { return std::pair(number.place, number.element); });
   return out;
 }
 

@@ -33,10 +33,6 @@ inline constexpr const char* kOverlapMeaning =
     "of up to 0.5 um beyond its error counts as contact";
 static_assert(scenes::kContactDepth_m == 0.5e-6);
 
-/// The volume that two parts share, in cubic millimetres: "7.9840"; "<= 12.3" if the error is as large as the
-/// volume; "not known" if no piece of the volume's surface was found.
-VPS_VIEWER_API std::string volumeWords(const scenes::CheckedPair& pair);
-
 /// The free travel of a part in one direction: "free", "1009.0"; "1009.0 (+- 962.4)" if the error is more
 /// than twice the usual error of the part's play, as in a taper; ">= 909.7" if the search ended before the
 /// part touched.

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "output/table.h"
+#include "vps_scenes/fits/check_fields.h"
+#include "vps_viewer/report/columns.h"
 #include "vps_viewer/report/csv.h"
 #include "vps_viewer/report/words.h"
 
@@ -15,35 +17,27 @@ namespace {
 
 using scenes::PairState;
 
-std::string place(const Vec3& p_W) {
-  return fixed(1e3 * p_W.x(), 2) + ", " + fixed(1e3 * p_W.y(), 2) + ", " + fixed(1e3 * p_W.z(), 2);
+/// A table with the columns that the field table gives the terminal.
+template <class Struct, class Rows>
+std::string fieldTable(const std::vector<Struct>& structs, const Rows& fields) {
+  std::vector<std::string> heads;
+  for (const ColumnCell& heading : columnHeadings(fields, Medium::Terminal))
+    heads.push_back((heading.is_left ? "<" : "") + heading.text);
+  Table table(heads);
+  for (const Struct& of : structs) {
+    std::vector<std::string> cells;
+    for (ColumnCell& cell : columnCells(of, fields, Medium::Terminal, fixed))
+      cells.push_back(std::move(cell.text));
+    table.add(std::move(cells));
+  }
+  return table.text();
 }
 
 std::string pairTable(const scenes::CheckResult& result) {
-  Table table(
-      {"<part", "<and", "<state", "clearance [um]", "overlap [um]", "volume [mm3]", "error [um]", "at [mm]"});
-  bool has_overlap = false;
-  for (const scenes::CheckedPair& pair : result.pairs) {
-    has_overlap = has_overlap || pair.interference_depth_m > 0;
-    const bool is_clash = pair.state >= PairState::PressFit;
-    const std::string state = pair.is_uncertain ? "not known" : toText(pair.state);
-    table.add({pair.a, pair.b,
-               pair.state == PairState::Clash && pair.is_allowed ? state + " (allowed)" : state,
-               is_clash ? "" : um(pair.clearance_m),
-               pair.interference_depth_m > 0 ? um(pair.interference_depth_m) : "",
-               is_clash ? volumeWords(pair) : "", um(pair.error_m), place(pair.at_W)});
-  }
-  return table.text() + (has_overlap ? std::string(kOverlapMeaning) + "\n" : "");
-}
-
-std::string fitTable(const scenes::CheckResult& result) {
-  Table table(
-      {"<fit", "<of", "<in", "size [mm]", "clearance [um]", "error [um]", "length [mm]", "<standard"});
-  for (const scenes::CheckedFit& fit : result.fits)
-    table.add({toText(fit.kind), fit.shaft, fit.bore, fixed(1e3 * fit.shaft_m, 3),
-               um(fit.diametral_clearance_m), um(fit.error_m), fixed(1e3 * fit.length_m, 2),
-               scenes::standardOf(fit)});
-  return table.text();
+  const bool has_overlap = std::ranges::any_of(
+      result.pairs, [](const scenes::CheckedPair& pair) { return pair.interference_depth_m > 0; });
+  return fieldTable(result.pairs, scenes::kCheckedPairFields) +
+         (has_overlap ? std::string(kOverlapMeaning) + "\n" : "");
 }
 
 std::string pressTable(const scenes::CheckResult& result) {
@@ -119,7 +113,7 @@ std::string undrawnPressFits(const scenes::CheckResult& result) {
 std::string checkTables(const scenes::CheckResult& result) {
   std::string out;
   if (!result.pairs.empty()) out += pairTable(result) + "\n";
-  if (!result.fits.empty()) out += fitTable(result) + "\n";
+  if (!result.fits.empty()) out += fieldTable(result.fits, scenes::kCheckedFitFields) + "\n";
   const bool is_pressed =
       std::ranges::any_of(result.fits, [](const scenes::CheckedFit& fit) { return fit.press.has_value(); });
   if (is_pressed) out += pressTable(result) + "\n";
@@ -145,33 +139,18 @@ std::string checkHeadline(const scenes::CheckResult& result) {
 
 std::string checkCsv(const scenes::CheckResult& result) {
   std::string out = csvLine({"what", "a", "b", "quantity", "value", "error"});
-  const auto add = [&](const char* what, const std::string& a, const std::string& b,
-                       const std::string& quantity, double value, double error) {
-    out += csvLine({what, a, b, quantity, csvNumber(value), csvNumber(error)});
+  const auto add = [&](const std::string& what, const std::string& a, const std::string& b, const auto& of,
+                       const auto& fields) {
+    for (const CsvNumber& number : csvNumbers(of, fields))
+      out += csvLine({number.object.empty() ? what : number.object, a, b, number.quantity,
+                      csvNumber(number.value), csvNumber(number.error)});
   };
-  for (const scenes::CheckedPair& pair : result.pairs) {
-    add("pair", pair.a, pair.b, "clearance_m", pair.clearance_m, pair.error_m);
-    add("pair", pair.a, pair.b, "interference_depth_m", pair.interference_depth_m, pair.error_m);
-    add("pair", pair.a, pair.b, "interference_volume_m3", pair.interference_volume_m3, pair.volume_error_m3);
-  }
-  for (const scenes::CheckedFit& fit : result.fits) {
-    add(toText(fit.kind), fit.shaft, fit.bore, "diametral_clearance_m", fit.diametral_clearance_m,
-        fit.error_m);
-    if (fit.press) {
-      add("press", fit.shaft, fit.bore, "pressure_Pa", fit.press->pressure_Pa, NAN);
-      add("press", fit.shaft, fit.bore, "force_N", fit.press->force_N, NAN);
-      add("press", fit.shaft, fit.bore, "declared_force_N", fit.press->declared_force_N, NAN);
-    }
-    add(toText(fit.kind), fit.shaft, fit.bore, "shaft_m", fit.shaft_m, fit.error_m);
-    add(toText(fit.kind), fit.shaft, fit.bore, "bore_m", fit.bore_m, fit.error_m);
-  }
-  constexpr std::array kAxes = {"+x", "-x", "+y", "-y", "+z", "-z"};
+  for (const scenes::CheckedPair& pair : result.pairs)
+    add("pair", pair.a, pair.b, pair, scenes::kCheckedPairFields);
+  for (const scenes::CheckedFit& fit : result.fits)
+    add(toText(fit.kind), fit.shaft, fit.bore, fit, scenes::kCheckedFitFields);
   for (const scenes::CheckedPart& part : result.parts)
-    for (std::size_t i = 0; part.play && i < kAxes.size(); ++i) {
-      add("part", part.name, "", std::string("play_m ") + kAxes[i], part.play->m[i], part.play->error_m[i]);
-      add("part", part.name, "", std::string("play_rad ") + kAxes[i], part.play->rad[i],
-          part.play->error_rad[i]);
-    }
+    add("part", part.name, "", part, scenes::kCheckedPartFields);
   return out;
 }
 
