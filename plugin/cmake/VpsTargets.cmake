@@ -177,21 +177,17 @@ function(vps_precompile target)
   endif()
 endfunction()
 
-# Compiles the sources of one folder together, eight at a time, or as many as the third argument says. What headers instantiate is compiled once for
-# all of them. A source with compile options of its own stays alone. File-local names of one batch must differ.
+# Compiles the sources of one folder together, eight at a time: what headers instantiate is compiled once for all of them.
+# A source with compile options of its own stays alone. File-local names of one batch must differ.
 function(vps_unite_folders target sources)
   if(NOT VPS_UNITY)
     return()
-  endif()
-  set(size 8)
-  if(ARGN)
-    set(size ${ARGN})
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   foreach(source IN LISTS sources)
     get_filename_component(folder "${source}" DIRECTORY)
     get_filename_component(folder "${folder}" NAME)
-    math(EXPR batch "0${count_${folder}} / ${size}")
+    math(EXPR batch "0${count_${folder}} / 8")
     set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${folder}_${batch}")
     math(EXPR count_${folder} "0${count_${folder}} + 1")
   endforeach()

@@ -186,6 +186,14 @@ TEST_P(RestWithSolver, SticksBelowTheFrictionAngleAndSlidesAbove) {
     }
 }
 
+/// Sets Bullet's contact callback for the object's lifetime.
+struct ScopedAddedCallback {
+  explicit ScopedAddedCallback(ContactAddedCallback callback) { gContactAddedCallback = callback; }
+  ~ScopedAddedCallback() { gContactAddedCallback = nullptr; }
+  ScopedAddedCallback(const ScopedAddedCallback&) = delete;
+  ScopedAddedCallback& operator=(const ScopedAddedCallback&) = delete;
+};
+
 // The slope is between the angles of kinetic and of static friction: a box at rest stays, and a sliding box
 // continues to slide. A step without friction adds 3 mm/s at most, which must not count as sliding.
 TEST_P(RestWithSolver, AFrictionModelGivesTheCoefficientAtRestAndWhileSliding) {
@@ -196,11 +204,17 @@ TEST_P(RestWithSolver, AFrictionModelGivesTheCoefficientAtRestAndWhileSliding) {
   const double angle_rad = std::atan(0.9 * kMu);
   const Mat3 R = rotationFromVector(Vec3(0, angle_rad, 0));
   const Vec3 down = R * Vec3(1, 0, 0);
-  for (const bool slides : {false, true}) {
+  // A contact callback that leaves the coefficient alone must not keep the model from changing it.
+  const ScopedAddedCallback callback([](btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                                        const btCollisionObjectWrapper*, int, int) { return false; });
+  for (const auto& [slides, has_callback] :
+       std::vector<std::pair<bool, bool>>{{false, false}, {true, false}, {true, true}}) {
     World world(GetParam(), settings);
     const Built box = steelBox(), ground = plate();
     world.add(ground, Pose(R, R * Vec3(0, 0, -0.005)), true, kMu);
     btRigidBody& body = world.add(box, Pose(R, R * Vec3(-0.01, 0, 0.005)), false, kMu);
+    if (has_callback)
+      body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
     world.step(50);  // the contacts settle
     const Vec3 start = fromBt(body.getWorldTransform().getOrigin());
     if (slides) body.setLinearVelocity(toBt(Vec3(kSpeed_m_s * down)));
@@ -212,7 +226,7 @@ TEST_P(RestWithSolver, AFrictionModelGivesTheCoefficientAtRestAndWhileSliding) {
     const double expected_m = slides ? kSpeed_m_s * kSteps * 1e-3 + a * 1e-6 * kSteps * (kSteps + 1) / 2 : 0;
     // As in SticksBelowTheFrictionAngleAndSlidesAbove: friction has an error of 0.3 % at most.
     const double friction_m = kGravity * kKinetic * 1e-6 * kSteps * (kSteps + 1) / 2;
-    EXPECT_NEAR(moved_m, expected_m, slides ? 3e-3 * friction_m : 1e-6) << slides;
+    EXPECT_NEAR(moved_m, expected_m, slides ? 3e-3 * friction_m : 1e-6) << slides << has_callback;
   }
 }
 

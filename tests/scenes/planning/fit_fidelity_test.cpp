@@ -57,7 +57,7 @@ TEST(FitFidelity, WhereMemoryLeavesASmallPartTooFewVoxelsItIsNamed) {
   Scene scene = blockOnPlate(8e-3);
   const std::string words = fitFidelity(scene, 10e3);
   EXPECT_GT(scene.fidelity.voxel_m, 1e-3);
-  EXPECT_NE(words.find("'part', 8.00 mm across, is less than eight of them"), std::string::npos) << words;
+  EXPECT_NE(words.find("'part', 8.00 mm across, is less than eight voxels"), std::string::npos) << words;
   // Voxels finer than the preset's may take only a fifth of the memory limit.
   scene = blockOnPlate(1e-3);
   const double preset_bytes = bytesOf(scene);

@@ -97,15 +97,15 @@ TEST(Trade, FinerPointsGiveAMoreAccurateForce) {
 
 TEST(Trade, MorePointsTakeMoreTime) {
   // An eighth of the spacing gives 64 times the points, and an exhaustive query reads each of them. The test
-  // only requires twice the time, since a loaded machine with cold caches reduced the ratio of 64 to 14.
+  // only requires four times the time, since a loaded machine with cold caches reduced the ratio of 64 to 14.
   double few_us = 1e9, many_us = 1e9;
   for (int i = 0; i < 3; ++i) {
     const TradeRow few = rowAt(0.25e-3, 1e-3), many = rowAt(0.25e-3, 0.125e-3);
-    EXPECT_GT(many.points_read, few.points_read);
+    EXPECT_GT(many.points_read, 32 * few.points_read);
     few_us = std::min(few_us, few.all_points.cpu_p50_us);
     many_us = std::min(many_us, many.all_points.cpu_p50_us);
   }
-  EXPECT_GT(many_us, 2 * few_us);
+  EXPECT_GT(many_us, 4 * few_us);
 }
 
 TEST(Trade, TheScenesOwnSettingIsRunAndTheOthersAreMeasuredOrListedAsLeftOut) {

@@ -5,10 +5,12 @@
 #include <dlfcn.h>
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #endif
 
 #include "vps/errors.h"
+#include "vps/version.h"
 
 namespace vps::viewer {
 
@@ -41,6 +43,11 @@ const LevelSetModule& module(const std::string& file) {
                     "needs OpenVDB and this program's module " VPS_VDB_MODULE " (" + why +
                         "); install both (Debian: libopenvdb10.0), or build the module with "
                         "'cmake --build build/release'");
+  if (std::string_view(found->version) != VPS_VERSION_STRING || found->voxmap_bytes != sizeof(VoxMap))
+    throw LoadError(file, "",
+                    "the module " VPS_VDB_MODULE
+                    " next to the program is of another build; build both with "
+                    "'cmake --build build/release'");
   return *found;
 }
 

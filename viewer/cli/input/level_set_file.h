@@ -3,6 +3,7 @@
 // OpenVDB and is loaded when a .vdb file is read or written. A build without OpenVDB has no module.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "vps/voxmap.h"
@@ -17,8 +18,11 @@ VoxMap loadLevelSet(const std::string& file);
 /// Writes a voxmap. Throws LoadError if the file cannot be written, or as requireOpenVdb().
 void saveLevelSet(const VoxMap& map, const std::string& file);
 
-/// Functions that the module provides. Both functions throw LoadError.
+/// Functions that the module provides. Both functions throw LoadError. The first two members tell a module of
+/// another build, whose voxmaps may have another layout.
 struct LevelSetModule {
+  const char* version = "";      ///< VPS_VERSION_STRING of the module's build
+  std::size_t voxmap_bytes = 0;  ///< sizeof(VoxMap) in the module's build
   VoxMap (*load)(const std::string& file) = nullptr;
   void (*save)(const VoxMap& map, const std::string& file) = nullptr;
 };

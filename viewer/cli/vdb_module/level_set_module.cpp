@@ -4,10 +4,11 @@
 #include "input/level_set_file.h"
 
 #include "vps/vdb.h"
+#include "vps/version.h"
 
 extern "C" {
 extern const vps::viewer::LevelSetModule vps_level_set_module;
 const vps::viewer::LevelSetModule vps_level_set_module = {
-    [](const std::string& file) { return vps::loadVdb(file); },
+    VPS_VERSION_STRING, sizeof(vps::VoxMap), [](const std::string& file) { return vps::loadVdb(file); },
     [](const vps::VoxMap& map, const std::string& file) { vps::saveVdb(map, file); }};
 }

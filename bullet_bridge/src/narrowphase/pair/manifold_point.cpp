@@ -104,11 +104,12 @@ void keepMaterial(btManifoldPoint& point, const btManifoldPoint& old) {
     point.m_contactCFM = old.m_contactCFM;
     point.m_contactERP = old.m_contactERP;
   } else {
-    point.m_contactPointFlags |=
-        old.m_contactPointFlags & (kOwnDirections | kOwnNormal | BT_CONTACT_FLAG_FRICTION_ANCHOR);
+    point.m_contactPointFlags |= old.m_contactPointFlags & (kOwnDirections | kOwnNormal | kOwnFriction |
+                                                            BT_CONTACT_FLAG_FRICTION_ANCHOR);
   }
   point.m_frictionCFM = old.m_frictionCFM;
-  point.m_combinedFriction = old.m_combinedFriction;
+  // A coefficient that the callback left alone follows the friction model in each step.
+  if ((old.m_contactPointFlags & kOwnFriction) != 0) point.m_combinedFriction = old.m_combinedFriction;
   point.m_combinedRollingFriction = old.m_combinedRollingFriction;
   point.m_combinedSpinningFriction = old.m_combinedSpinningFriction;
   point.m_combinedRestitution = old.m_combinedRestitution;

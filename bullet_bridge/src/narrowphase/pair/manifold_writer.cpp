@@ -130,11 +130,13 @@ void ManifoldWriter::callAdded(btManifoldPoint& point,
                                const btCollisionObjectWrapper* const (&bodies)[2]) const {
   const btVector3 normal = point.m_normalWorldOnB;
   const btVector3 directions[2] = {point.m_lateralFrictionDir1, point.m_lateralFrictionDir2};
+  const btScalar friction = point.m_combinedFriction;
   gContactAddedCallback(point, bodies[0], point.m_partId0, point.m_index0, bodies[1], point.m_partId1,
                         point.m_index1);
   if (point.m_normalWorldOnB != normal) point.m_contactPointFlags |= kOwnNormal;
   if (point.m_lateralFrictionDir1 != directions[0] || point.m_lateralFrictionDir2 != directions[1])
     point.m_contactPointFlags |= kOwnDirections;
+  if (point.m_combinedFriction != friction) point.m_contactPointFlags |= kOwnFriction;
 }
 
 void ManifoldWriter::callProcessed() const {

@@ -21,8 +21,8 @@ struct btCollisionObjectWrapper;
 namespace vps::bullet {
 
 // Bits of m_contactPointFlags above Bullet's own: gContactAddedCallback was called for the point; the
-// callback set friction directions; the callback set a normal.
-constexpr int kWasAdded = 1 << 25, kOwnDirections = 1 << 26, kOwnNormal = 1 << 27;
+// callback set friction directions; the callback set a normal; the callback set the coefficient of friction.
+constexpr int kWasAdded = 1 << 25, kOwnDirections = 1 << 26, kOwnNormal = 1 << 27, kOwnFriction = 1 << 30;
 
 /// Positions of a contact on both bodies: the shell point, and the nearest point of the other body's surface.
 void positions(const Candidate& c, Vec3& on0, Vec3& on1);

@@ -9,6 +9,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
@@ -165,9 +166,14 @@ const Shape* shapeWithMaterials(const btCollisionObjectWrapper& wrapper) {
 }
 
 // Limits friction as btManifoldResult::calculateCombinedFriction() does.
+constexpr double kMostFriction = 10;
 double limitedFriction(double product) {
-  constexpr double kMost = 10;
-  return std::clamp(product, -kMost, kMost);
+  return std::clamp(product, -kMostFriction, kMostFriction);
+}
+// install() asks a host's friction model for a few values only. The solver gets the coefficient at rest in
+// place of a value that is not finite, and 0 in place of a negative value.
+double usableFriction(double of_model, double at_rest) {
+  return std::isfinite(of_model) ? std::clamp(of_model, 0.0, kMostFriction) : at_rest;
 }
 
 }  // namespace
@@ -191,7 +197,7 @@ double PairMaterial::friction(const Candidate& c, const RelativeMotion& motion) 
   const double mu = frictionAtRest(c);
   if (!coefficient_) return mu;
   const Vec3 v = motion.V_start.v + motion.V_start.w.cross(c.p_W);
-  return coefficient_(mu, (v - c.n_W.dot(v) * c.n_W).norm());
+  return usableFriction(coefficient_(mu, (v - c.n_W.dot(v) * c.n_W).norm()), mu);
 }
 
 double PairMaterial::frictionAtRest(const Candidate& c) const {

@@ -3,6 +3,7 @@
 // its mesh.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 

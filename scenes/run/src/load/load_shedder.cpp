@@ -191,7 +191,7 @@ void LoadShedder::finish(double time_s) {
     simulation_.setShells(std::move(resampled.shells));
   } catch (const std::exception& error) {
     change.is_done = false;
-    change.why += std::string("; but the points could not be made:  ") + error.what();
+    change.why += std::string("; but the points could not be made: ") + error.what();
   }
   // If a change to a level with less load fails, the level after it can still be tried; if a change to a
   // level with more load fails, the present level is kept and the change is tried again later.

@@ -57,7 +57,14 @@ void forEachRun(std::size_t count, const ManyRunsOptions& options,
   const tbb::global_control more(tbb::global_control::max_allowed_parallelism,
                                  std::max<std::size_t>(allowed, threads + 1));
   tbb::task_arena workers(static_cast<int>(threads), 0);
-  for (unsigned i = 0; i < threads; ++i) workers.enqueue(work);
+  unsigned begun = 0;
+  try {
+    for (; begun < threads; ++begun) workers.enqueue(work);
+  } catch (
+      ...) {  // no memory for a task: those that were enqueued use this stack frame until they have ended
+    shared.at_work -= threads - begun;
+    shared.fail();
+  }
   bool may_report = options.report != nullptr;
   while (shared.at_work > 0) {
     std::this_thread::sleep_for(kReportPeriod);

@@ -20,7 +20,9 @@ struct ManyRunsOptions {
 /// Calls run(i, stop) for i from 0 to count - 1 in this order, each on one of the threads, and returns when
 /// all calls have returned. After `stop` is set, no further run begins. `stop` is set when options.stop is
 /// set, or when a run or options.report throws; forEachRun() then throws the first exception again. Results
-/// are the same for any number of threads if run(i) depends on i alone.
+/// are the same for any number of threads if run(i) depends on i alone. The runs are one after the other if
+/// the caller has limited TBB's threads to one. Must not be called from a task of TBB: the calling thread
+/// waits.
 void forEachRun(std::size_t count, const ManyRunsOptions& options,
                 const std::function<void(std::size_t i, const std::atomic<bool>& stop)>& run);
 

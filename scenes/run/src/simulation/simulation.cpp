@@ -181,7 +181,7 @@ struct Simulation::World {
     for (const auto& [part, b] : bodies)
       if (!bullet::fromBt(b.body->getWorldTransform()).isFinite())
         throw LoadError(scene.file, scene.parts[part].part.name,
-                        "its pose is no longer finite; check its mass and size, or choose a finer  "
+                        "its pose is no longer finite; check its mass and size, or choose a finer "
                         "fidelity");
   }
 

@@ -43,11 +43,11 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
           .append(kHoldsRemedy);
     return words;
   }
-  if (world.state().gives_up) return "the part was released on request:  " + where;
+  if (world.state().gives_up) return "the part was released on request: " + where;
   const bool is_late = world.state().time_s - result.start_s > step.timeout_s;
   if (!step.takes_off && is_late && result.final_error_m <= result.tolerance_m)
     return "the step's time (timeout_s) was over before the hand had pressed the part to its target, so the "
-           "part is not shown to be in place:  " +
+           "part is not shown to be in place: " +
            where + "; increase timeout_s";
   std::string reason = std::string("the hand gave up") + (step.takes_off ? " taking the part off" : "") +
                        (is_late ? " after its time was over: " : ": ");

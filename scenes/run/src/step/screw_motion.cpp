@@ -57,7 +57,7 @@ std::string threadFault(const SceneStep& step, const StepResult& result) {
                               lengthInWords(pitch_m) + ") and leaned by up to " +
                               degreesInWords(result.lean_rad);
   if (result.lean_rad > device::ScrewTask::kCrossedLean_rad) return "the thread is crossed: " + figures;
-  if (result.turns < kLeastTurns) return "the part could not be screwed on:  " + figures;
+  if (result.turns < kLeastTurns) return "the part could not be screwed on: " + figures;
   const double off = result.advance_per_turn_m / pitch_m - 1;
   if (std::abs(off) <= device::ScrewTask::kOffPitch) return {};
   return (off < 0 ? "the threads did not catch: " : "the thread is skipped: ") + figures;

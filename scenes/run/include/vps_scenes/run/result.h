@@ -103,7 +103,10 @@ inline bool isGood(const StepResult& step) {
 
 /// @param hand_N  greatest force of the hand
 inline Evidence evidenceOf(const StepResult& step, double hand_N) {
-  return {.blocked = step.blocked_by.empty() ? std::string() : step.reason,
+  std::string blocked;
+  if (!step.blocked_by.empty())
+    blocked = step.reason.empty() ? "blocked by '" + step.blocked_by + "'" : step.reason;
+  return {.blocked = std::move(blocked),
           .is_in_place = step.completed,
           .failure = step.failure_reason,
           .depth_m = step.max_penetration_m,
