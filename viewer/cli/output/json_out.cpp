@@ -347,6 +347,9 @@ std::string toJson(const scenes::CheckResult& result) {
   places["moved"] = Json::array();
   for (const scenes::MovedPart& part : result.places.moved)
     places["moved"].push_back(toObject(part, scenes::kMovedPartFields));
+  places["groups"] = Json::array();
+  for (const scenes::CheckedGroup& group : result.places.groups)
+    places["groups"].push_back(toObject(group, scenes::kCheckedGroupFields));
   return text({{"wall", toObject(result, scenes::kCheckWallFields)},
                {"assembly", result.assembly},
                {"verdict", scenes::toText(result.verdict())},

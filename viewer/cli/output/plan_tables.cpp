@@ -110,10 +110,11 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
     if (!step.falling.empty())
       out += "Until '" + step.name + "' is in place, nothing carries " + listed(step.falling) + ".\n";
   for (const scenes::BlockedPart& blocked : assembly.blocked)
-    out +=
-        "'" + blocked.name + "' cannot be taken off: " +
-        (blocked.by.empty() ? std::string("no path was found") : "it is stopped by " + listed(blocked.by)) +
-        (blocked.is_searched ? "" : "; the search for paths of several legs ended at its limit") + ".\n";
+    out += "'" + blocked.name +
+           "' was not taken off: no path was found, which does not prove that there is none" +
+           (blocked.by.empty() ? std::string()
+                               : "; in straight directions it is stopped by " + listed(blocked.by)) +
+           (blocked.is_searched ? "" : "; the search for paths of several legs ended at its limit") + ".\n";
   return out;
 }
 
@@ -227,8 +228,9 @@ std::string planHeadline(const scenes::PlanResult& plan) {
   if (const std::size_t subs = plan.assemblies.size() - 1; subs > 0)
     out += ", " + std::to_string(subs) + (subs == 1 ? " subassembly" : " subassemblies");
   const std::size_t blocked = plan.blocked();
-  out += blocked == 0 ? std::string(", all parts planned")
-                      : ", " + std::to_string(blocked) + (blocked == 1 ? " part" : " parts") + " blocked";
+  out += blocked == 0
+             ? std::string(", all parts planned")
+             : ", " + std::to_string(blocked) + (blocked == 1 ? " part" : " parts") + " without a path";
   return out + " in " + fixed(plan.check_wall_s + plan.plan_wall_s, 1) + " s";
 }
 

@@ -90,6 +90,7 @@ void printSteps(const scenes::AssembleResult& result, const Fidelity& fidelity) 
     if (!step.stands_on.empty())
       std::printf("%s: this step was tried with '%s' put at its target, which it had not reached\n", name,
                   step.stands_on.c_str());
+    if (step.moved_m > 0) std::printf("%s: %s\n", name, movedWords(step).c_str());
     if (!step.aligned_by.empty())
       std::printf("%s: the part is within its tolerance; '%s' moves it to its exact target in a later step\n",
                   name, step.aligned_by.c_str());

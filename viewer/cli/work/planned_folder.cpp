@@ -230,7 +230,9 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   // The plan has already reported parts that nothing carries.
   const bool is_free = std::ranges::all_of(
       faults, [](const scenes::WayFault& fault) { return fault.kind == scenes::WayFaultKind::Support; });
-  PlannedFolder folder{plan.blocked() > 0 || !is_free ? kBad : kGood, plan.steps(), {}};
+  // That no path was found is no proof that there is none.
+  const int status = !is_free ? kBad : plan.blocked() > 0 ? kNotShown : kGood;
+  PlannedFolder folder{status, plan.steps(), {}};
   for (std::size_t i = 0; i < plan.assemblies.size(); ++i)
     folder.scene_files.push_back({(std::filesystem::path(given.out) / sceneFileName(plan, i)).string(),
                                   !plan.assemblies[i].steps.empty()});

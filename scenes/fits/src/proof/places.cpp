@@ -70,29 +70,24 @@ class PlaceSearch {
   [[nodiscard]] CheckedPlaces search(const Progress& progress) {
     CheckedPlaces out;
     const std::vector<std::vector<std::size_t>> groups = clashes_.groups();
+    const auto add = [&out](CheckedGroup group) {
+      const bool is_worse = group.verdict == Verdict::Blocked || out.verdict == Verdict::Fits;
+      if (group.verdict != out.verdict && out.verdict != Verdict::Blocked && is_worse) {
+        out.verdict = group.verdict;
+        out.reason = group.reason;
+      }
+      out.groups.push_back(std::move(group));
+    };
     for (std::size_t i = 0; i < groups.size(); ++i) {
       if (progress) progress("searching for places without overlap", double(i) / double(groups.size()));
-      const auto [verdict, reason] = freeGroup(groups[i]);
-      const bool is_worse = verdict == Verdict::Blocked || out.verdict == Verdict::Fits;
-      if (verdict != Verdict::Fits && is_worse) {
-        out.verdict = verdict;
-        out.reason = reason;
-      }
-      if (verdict == Verdict::Blocked) break;
+      std::vector<std::string> names;
+      for (const std::size_t body : groups[i])
+        for (const std::size_t part : bodies_[body].parts) names.push_back(parts_[part].name);
+      std::ranges::sort(names);
+      auto [verdict, reason] = freeGroup(groups[i], out.verdict == Verdict::Blocked);
+      add({std::move(names), verdict, std::move(reason)});
     }
-    for (const NearPair& pair : clashes_.tied()) {
-      if (out.verdict == Verdict::Blocked) break;
-      if (std::string why = provenAlone(pair); !why.empty()) {
-        out.verdict = Verdict::Blocked;
-        out.reason = std::move(why);
-        break;
-      }
-      const bool is_fixed =
-          mayMove_m(parts_[pair.a]) + mayMove_m(parts_[pair.b]) == 0 && std::isfinite(pair.error_m);
-      out.verdict = is_fixed ? Verdict::Blocked : Verdict::NotShown;
-      out.reason = quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) + " overlap and are " +
-                   (is_fixed ? "both fixed" : "tied to each other by fixed parts or press fits");
-    }
+    for (const NearPair& pair : clashes_.tied()) add(tiedGroup(pair));
     if (out.verdict == Verdict::Fits && !isFree(movedPairs(), X_WP_)) {
       out.verdict = Verdict::NotShown;
       out.reason = "no places without overlap were found for all parts at once";
@@ -104,7 +99,24 @@ class PlaceSearch {
  private:
   using Answer = std::pair<Verdict, std::string>;
 
-  [[nodiscard]] Answer freeGroup(const std::vector<std::size_t>& group) {
+  /// Two clashing parts that no motion of the search separates.
+  [[nodiscard]] CheckedGroup tiedGroup(const NearPair& pair) const {
+    CheckedGroup out;
+    out.parts = {parts_[pair.a].name, parts_[pair.b].name};
+    out.verdict = Verdict::Blocked;
+    std::ranges::sort(out.parts);
+    out.reason = provenAlone(pair);
+    if (!out.reason.empty()) return out;
+    const bool is_fixed =
+        mayMove_m(parts_[pair.a]) + mayMove_m(parts_[pair.b]) == 0 && std::isfinite(pair.error_m);
+    if (!is_fixed) out.verdict = Verdict::NotShown;
+    out.reason = quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) + " overlap and are " +
+                 (is_fixed ? "both fixed" : "tied to each other by fixed parts or press fits");
+    return out;
+  }
+
+  /// @param is_quick  asks only for the proofs that need no search
+  [[nodiscard]] Answer freeGroup(const std::vector<std::size_t>& group, bool is_quick) {
     std::vector<const NearPair*> clashes;
     for (const NearPair& pair : clashes_.pairs())
       if (clashes_.isOf(group, pair)) clashes.push_back(&pair);
@@ -112,6 +124,7 @@ class PlaceSearch {
       if (std::string why = provenAlone(*pair); !why.empty()) return {Verdict::Blocked, std::move(why)};
     for (const NearPair* pair : clashes)
       if (std::string why = hiddenByFacets(*pair); !why.empty()) return {Verdict::NotShown, std::move(why)};
+    if (is_quick) return {Verdict::NotShown, "places were not searched for, since other parts are blocked"};
     Tried last;
     std::size_t most_moved = 0;
     work_ = 0;

@@ -55,8 +55,10 @@ class StepProbe {
   StepMargin measure() {
     StepMargin out;
     out.part = scene_.parts[scene_.steps[0].part].part.name;
-    if (scene_.steps[0].tolerance_m <= 0)  // the part has the tolerance of its drawn size at all sizes
-      scene_.steps[0].tolerance_m = checkDrawnTargets(scene_, {})[0].tolerance_m;
+    if (scene_.steps[0].tolerance_m <= 0) {  // the part has the tolerance of its drawn size at all sizes
+      Scene drawn = scene_;
+      scene_.steps[0].tolerance_m = checkDrawnTargets(drawn, {})[0].tolerance_m;
+    }
     measureGrowth(out);
     measurePlay(out);
     out.checks = checks_;

@@ -4,30 +4,44 @@
 #include <deque>
 #include <numbers>
 
+#include "surface/triangle_gap.h"
 #include "ways/way.h"
 
 namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMostLegs = 4;
-constexpr std::size_t kMostPlaces = 96;
 constexpr double kLeastLeg = 0.02;  // share of the part's size; shorter legs count as play
 constexpr double kTurn_rad = 2 * std::numbers::pi;
 /// Stops within a leg, as shares of the leg. Assumed: an opening at the side of a leg is wider than an eighth
 /// of the leg.
 constexpr std::array kStops = {1.0, 0.5, 0.75, 0.25, 0.875, 0.625, 0.375, 0.125};
 
+/// Which motions a search tries from each place.
+struct Repertoire {
+  std::size_t most_legs, most_places;
+  /// Also motions that the contacts suggest, the axes of the part as it stands, and legs as short as play.
+  bool follows_contacts;
+};
+constexpr Repertoire kAlongAxes{4, 96, false};
+constexpr Repertoire kByContacts{5, 256, true};
+
 struct Place {
   Pose X_W;  ///< world motion that brings the part from its target to this place
   std::vector<Leg> legs;
 };
 
+/// A point at which a held part stopped a motion.
+struct Contact {
+  Vec3 p_W;
+  Vec3 n_W;  ///< unit normal out of the held part
+};
+
 class LegSearch {
  public:
   LegSearch(const PairMotions& motions, const std::vector<std::size_t>& parts,
-            const std::vector<std::size_t>& held, SearchWork& work)
-      : motions_(motions), parts_(parts), held_(held), work_(work) {
+            const std::vector<std::size_t>& held, const Repertoire& repertoire, SearchWork& work)
+      : motions_(motions), parts_(parts), held_(held), repertoire_(repertoire), work_(work) {
     Box box_W;
     std::vector<std::size_t> axes;
     for (const std::size_t part : parts) {
@@ -41,6 +55,7 @@ class LegSearch {
     for (const std::size_t d : axes) straight_.push_back({motions.directions()[d], Vec3::Zero(), false});
     if (parts.size() > 1) return;
     for (const CheckedFit& fit : motions.fitsOf(parts.front())) {
+      fit_axes_.push_back({fit.axis_W, fit.at_W, true});
       if (fit.kind != FitKind::Shaft || hasTurnAbout(fit)) continue;
       for (const double sign : {1.0, -1.0}) turns_.push_back({sign * fit.axis_W, fit.at_W, true});
     }
@@ -66,49 +81,142 @@ class LegSearch {
     });
   }
 
+  /// The parts at a place, with the searches of their motions. One part may stand for several searches.
+  struct Standing {
+    std::vector<PlacedSurface> placed;
+    std::vector<MotionSearch> searches;
+  };
+  [[nodiscard]] Standing standingAt(const Pose& X_W) const {
+    Standing out;
+    for (const std::size_t part : parts_) out.placed.push_back(displaced(motions_.parts()[part], X_W));
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      out.searches.push_back(motions_.search(out.placed[i], parts_[i], held_));
+    return out;
+  }
+
+  /// How far the parts move, and with `contact` the point that stopped them.
+  Reach reachOf(const Standing& standing, const Motion& motion, double most,
+                std::vector<Contact>* contacts = nullptr) {
+    Reach least{most, false, false, {}};
+    const std::size_t none = parts_.size();
+    std::size_t by = none;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      if (const Reach reach = standing.searches[i].reach(motion, least.s, &work_); reach.is_stopped) {
+        least = reach;
+        by = i;
+      }
+    if (contacts != nullptr && by != none && !least.is_given_up)
+      contacts->push_back(contactOf(standing.placed[by], standing.searches[by], motion, least));
+    return least;
+  }
+
+  [[nodiscard]] static Contact contactOf(const PlacedSurface& placed, const MotionSearch& search,
+                                         const Motion& motion, const Reach& reach) {
+    const PlacedSurface& held = search.held(reach.by.held);
+    const Pose X_WM = motion.at(reach.s) * placed.X_WP;
+    const auto inWorld = [](const PlacedSurface& of, std::uint32_t facet, const Pose& X) {
+      Triangle t = of.surface->triangle(facet);
+      for (Vec3& p : t) p = X * p;
+      return t;
+    };
+    const TriangleGap gap = triangleGap(inWorld(placed, reach.by.moving_facet, X_WM),
+                                        inWorld(held, reach.by.held_facet, held.X_WP));
+    // Of the normals of both facets, the one that the motion meets head-on.
+    const Vec3 of_held = held.X_WP.R * held.surface->normal(reach.by.held_facet);
+    const Vec3 of_moving = -(X_WM.R * placed.surface->normal(reach.by.moving_facet));
+    const Vec3 p_W = 0.5 * (gap.p_a + gap.p_b);
+    const Vec3 v_W = motion.velocity(motion.at(reach.s).inverse() * p_W);
+    return {p_W, of_held.dot(v_W) <= of_moving.dot(v_W) ? of_held : of_moving};
+  }
+
+  /// The straight motions from a place: along the axes, and along the axes of the part as it stands there.
+  [[nodiscard]] std::vector<Motion> straightFrom(const Place& from) const {
+    std::vector<Motion> out = straight_;
+    if (!repertoire_.follows_contacts || rotationVector(from.X_W.R).norm() < 1e-6) return out;
+    for (const Motion& motion : straight_) addStraight(from.X_W.R * motion.direction, out);
+    return out;
+  }
+  static void addStraight(const Vec3& d, std::vector<Motion>& out) {
+    const bool is_known =
+        std::ranges::any_of(out, [&](const Motion& other) { return (other.direction - d).norm() < 1e-3; });
+    if (!is_known) out.push_back({d, Vec3::Zero(), false});
+  }
+
+  /// The motions that lead away from contacts which stop straight motions: a slide along the contact; a turn
+  /// about the contact, by which the middle of the part continues; and a screw about an axis of the part or
+  /// of a fit whose advance slides along the contact, as helical teeth do.
+  void addByContact(const Place& from, const Vec3& d, const Contact& at, std::vector<Motion>& straight,
+                    std::vector<Motion>& turns) const {
+    constexpr double kFlat = 0.1;  // sine below which two directions count as parallel
+    const Vec3 slide = d - d.dot(at.n_W) * at.n_W;
+    if (slide.norm() > kFlat) addStraight(slide.normalized(), straight);
+    const Vec3 arm = from.X_W * center_W_ - at.p_W;
+    if (const Vec3 axis = arm.cross(d); axis.norm() > kFlat * arm.norm())
+      turns.push_back({axis.normalized(), at.p_W, true});
+    std::vector<Motion> axes = fit_axes_;
+    for (int i = 0; i < 3; ++i)
+      axes.push_back({motions_.parts()[parts_.front()].X_WP.R.col(i), center_W_, true});
+    for (Motion axis : axes) {
+      axis.direction = from.X_W.R * axis.direction;
+      axis.center = from.X_W * axis.center;
+      if (std::abs(axis.direction.dot(d)) < 1 - 1e-6) continue;
+      const double along = at.n_W.dot(axis.direction),
+                   around_m = at.n_W.dot(axis.direction.cross(at.p_W - axis.center));
+      if (std::abs(along) < 1e-3 || std::abs(around_m) < 1e-3 * std::abs(along) * size_m_) continue;
+      axis.forward_m = -around_m / along;
+      if (axis.forward_m * axis.direction.dot(d) < 0) axis.direction = -axis.direction;
+      turns.push_back(axis);
+    }
+  }
+
   /// Returns a path if the part leaves straight from this place; otherwise adds the places that it can reach.
   std::optional<Way> expand(const Place& from, std::deque<Place>& waiting) {
-    std::vector<PlacedSurface> placed;
-    for (const std::size_t part : parts_) placed.push_back(displaced(motions_.parts()[part], from.X_W));
-    std::vector<MotionSearch> searches;
-    for (std::size_t i = 0; i < parts_.size(); ++i)
-      searches.push_back(motions_.search(placed[i], parts_[i], held_));
-    const auto reachOf = [&](const Motion& motion, double most) {
-      Reach least{most, false, false, {}};
-      for (const MotionSearch& search : searches)
-        if (const Reach reach = search.reach(motion, least.s, &work_); reach.is_stopped) least = reach;
-      return least;
-    };
+    const Standing standing = standingAt(from.X_W);
     std::vector<std::pair<Motion, double>> legs;
-    for (const Motion& motion : straight_) {
-      const Reach reach = reachOf(motion, motions_.leave_m());
+    std::vector<Motion> straight = straightFrom(from), turns = turns_;
+    const std::size_t usual = straight.size();
+    const bool is_last = from.legs.size() + 1 >= repertoire_.most_legs;
+    for (std::size_t i = 0; i < straight.size(); ++i) {
+      const Motion motion = straight[i];
+      std::vector<Contact> contacts;
+      const bool wants_contact = repertoire_.follows_contacts && parts_.size() == 1 && i < usual && !is_last;
+      const Reach reach = reachOf(standing, motion, motions_.leave_m(), wants_contact ? &contacts : nullptr);
       if (!reach.is_stopped) {
         Way way{WayKind::Legs, from.legs, kNoDirection, 0};
         giveRoom(from, motion, way);
         way.legs.push_back({motion, motions_.leave_m()});
         return way;
       }
-      if (reach.s > kLeastLeg * size_m_) legs.emplace_back(motion, reach.s);
+      if (isLeg(from, reach.s)) legs.emplace_back(motion, reach.s);
+      for (const Contact& contact : contacts) addByContact(from, motion.direction, contact, straight, turns);
     }
-    if (from.legs.size() + 1 >= kMostLegs) return std::nullopt;
-    for (const Motion& motion : turns_) {
-      const double s = reachOf(motion, kTurn_rad).s;
+    if (is_last) return std::nullopt;
+    for (const Motion& motion : turns) {
+      // A screw ends where it has left its mates along its axis.
+      const double most = motion.forward_m == 0
+                              ? kTurn_rad
+                              : std::min(4 * kTurn_rad, 2 * size_m_ / std::abs(motion.forward_m));
+      const double s = reachOf(standing, motion, most).s;
       if (s > kLeastLeg) legs.emplace_back(motion, s);
     }
     // A stopped part may be as deep as allowed; the leg is shortened to a pose where the part is free.
     double rest_m = 0;
-    for (const MotionSearch& search : searches) rest_m = std::max(rest_m, search.rest_m());
+    for (const MotionSearch& search : standing.searches) rest_m = std::max(rest_m, search.rest_m());
     for (auto& [motion, s] : legs) s = std::max(0.0, s - 2 * rest_m / (motion.is_turn ? 0.5 * size_m_ : 1));
     for (const double share : kStops)
       for (const auto& [motion, s] : legs) addPlace(from, {motion, share * s}, waiting);
     return std::nullopt;
   }
 
+  /// Whether a straight motion of this length is a leg. The play of a part makes legs too, at the beginning.
+  [[nodiscard]] bool isLeg(const Place& from, double s) const {
+    constexpr double kLeastPlay_m = 2e-6;
+    if (s > kLeastLeg * size_m_) return true;
+    return repertoire_.follows_contacts && from.legs.size() < 2 && s > kLeastPlay_m;
+  }
+
   [[nodiscard]] bool isFreeFrom(const Pose& X_W, const Motion& motion) {
-    return std::ranges::none_of(parts_, [&](std::size_t part) {
-      const PlacedSurface placed = displaced(motions_.parts()[part], X_W);
-      return motions_.search(placed, part, held_).reach(motion, motions_.leave_m(), &work_).is_stopped;
-    });
+    return !reachOf(standingAt(X_W), motion, motions_.leave_m()).is_stopped;
   }
 
   /// Shortens the last leg, which ended at an obstacle, to the middle of the range from which the part can
@@ -132,10 +240,14 @@ class LegSearch {
   }
 
   void addPlace(const Place& from, const Leg& leg, std::deque<Place>& waiting) {
-    if (seen_.size() >= kMostPlaces) return;
+    if (seen_.size() >= repertoire_.most_places) return;
     const Pose X_W = leg.motion.at(leg.s) * from.X_W;
+    // Places in the play of a part are told apart by a share of the play.
+    const double moved_m = (X_W * center_W_ - from.X_W * center_W_).norm();
+    const double same_m =
+        leg.motion.is_turn ? kLeastLeg * size_m_ : std::min(kLeastLeg * size_m_, 0.3 * moved_m);
     const bool is_known = std::ranges::any_of(seen_, [&](const Pose& other) {
-      return (other * center_W_ - X_W * center_W_).norm() < kLeastLeg * size_m_ &&
+      return (other * center_W_ - X_W * center_W_).norm() < same_m &&
              rotationVector(other.R.transpose() * X_W.R).norm() < kLeastLeg;
     });
     if (is_known) return;
@@ -147,10 +259,11 @@ class LegSearch {
   const PairMotions& motions_;
   const std::vector<std::size_t>& parts_;
   const std::vector<std::size_t>& held_;
+  const Repertoire& repertoire_;
   SearchWork& work_;
   double size_m_ = 0;
   Vec3 center_W_;
-  std::vector<Motion> straight_, turns_;
+  std::vector<Motion> straight_, turns_, fit_axes_;
   std::vector<Pose> seen_;
 };
 
@@ -158,7 +271,13 @@ class LegSearch {
 
 std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::size_t>& parts,
                           const std::vector<std::size_t>& held, SearchWork& work) {
-  return LegSearch(motions, parts, held, work).find();
+  if (std::optional<Way> way = LegSearch(motions, parts, held, kAlongAxes, work).find()) return way;
+  if (parts.size() > 1) return std::nullopt;
+  SearchWork more{work.most, 0};
+  std::optional<Way> way = LegSearch(motions, parts, held, kByContacts, more).find();
+  work.most += more.most;
+  work.done += more.done;
+  return way;
 }
 
 }  // namespace vps::scenes

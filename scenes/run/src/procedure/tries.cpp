@@ -96,10 +96,10 @@ AssembleResult assembleTries(const Scene& scene, const TrySettings& settings,
                              const AssembleOptions& options) {
   requireTries(scene, settings, options);
   std::shared_ptr<const CheckResult> checked;
-  std::vector<StepResult> drawn = checkDrawnTargets(scene, options.progress, &checked);
+  Scene modelled = scene;
+  std::vector<StepResult> drawn = checkDrawnTargets(modelled, options.progress, &checked);
   const bool is_blocked =
       std::ranges::any_of(drawn, [](const StepResult& step) { return step.verdict == Verdict::Blocked; });
-  Scene modelled = scene;
   buildModels(modelled, makeModelPlan(modelled, ModelPurpose::Assemble, options.models_everything), options);
   const std::size_t count = is_blocked ? 1 : static_cast<std::size_t>(settings.tries);
   Tries tries(modelled, std::move(drawn), count, options);

@@ -113,6 +113,29 @@ const std::string* otherOf(const std::string& part, const std::string& a, const 
   return contains(in_place, other) ? &other : nullptr;
 }
 
+/// Decides about a part that overlaps `blocked_by` as drawn: it stays blocked if the search for places has
+/// proven that no place without overlap exists.
+void judgeByPlaces(const CheckedPlaces& places, StepResult& step) {
+  const auto isIn = [](const CheckedGroup& group, const std::string& name) {
+    return std::ranges::find(group.parts, name) != group.parts.end();
+  };
+  bool is_free = places.verdict == Verdict::Fits;
+  std::string doubt = places.reason;
+  for (const CheckedGroup& group : places.groups) {
+    if (!isIn(group, step.part) || !isIn(group, step.blocked_by)) continue;
+    if (group.verdict == Verdict::Blocked) {
+      step.reason += "; " + group.reason;
+      return;
+    }
+    is_free = group.verdict == Verdict::Fits;
+    if (!is_free) doubt = group.reason;
+  }
+  if (!is_free) step.overlap_doubt = step.reason + "; " + doubt;
+  step.blocked_by = step.reason = "";
+  step.blocked_at_W = Vec3::Zero();
+  step.blocked_depth_m = step.blocked_error_m = 0;
+}
+
 void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
   for (const CheckedPair& pair : checked.pairs) {
     const std::string* other = otherOf(step.part, pair.a, pair.b, in_place);
@@ -126,9 +149,9 @@ void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_plac
     step.blocked_depth_m = pair.interference_depth_m;
     step.blocked_error_m = pair.error_m;
   }
-  if (!step.blocked_by.empty())
-    step.reason =
-        overlapReason(step.blocked_by, step.blocked_depth_m, step.blocked_error_m, step.blocked_at_W);
+  if (step.blocked_by.empty()) return;
+  step.reason = overlapReason(step.blocked_by, step.blocked_depth_m, step.blocked_error_m, step.blocked_at_W);
+  judgeByPlaces(checked.places, step);
 }
 
 /// Adds up the forces that press the part in.
@@ -228,6 +251,21 @@ std::string aloneDoubt(const CheckResult& checked, const StepResult& step) {
          "whether the parts are laid out side by side, or each in a frame of its own";
 }
 
+/// Moves the paths of parts that overlap others as drawn, so that they end at the places without overlap that
+/// the check has found.
+void moveTargets(const CheckedPlaces& places, Scene& scene, std::vector<StepResult>& steps) {
+  for (const MovedPart& moved : places.moved)
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      SceneStep& step = scene.steps[i];
+      if (steps[i].part != moved.name) continue;
+      const Pose X = moved.X_WP * placeOf(step).inverse();
+      step.X_WP_start = X * step.X_WP_start;
+      step.X_WP_target = X * step.X_WP_target;
+      for (Pose& point : step.way_points) point = X * point;
+      steps[i].moved_m = moved.most_m;
+    }
+}
+
 double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_place, const SceneStep& planned,
                    const std::string& part) {
   if (planned.tolerance_m > 0) return planned.tolerance_m;
@@ -244,10 +282,11 @@ double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_pl
 
 }  // namespace
 
-std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress,
+std::vector<StepResult> checkDrawnTargets(Scene& scene, const Progress& progress,
                                           std::shared_ptr<const CheckResult>* to) {
   CheckSettings settings;
   settings.has_play = false;
+  settings.has_places = true;
   const auto kept =
       std::make_shared<const CheckResult>(checkAssembly(scene.name, drawnParts(scene), settings, progress));
   if (to != nullptr) *to = kept;
@@ -267,6 +306,7 @@ std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& pr
     if (steps[i].blocked_by.empty()) findClosedRoom(scene, planned, in_place, steps[i]);
     if (!steps[i].blocked_by.empty()) steps[i].verdict = judge({.blocked = steps[i].reason}).verdict;
   }
+  moveTargets(checked.places, scene, steps);
   return steps;
 }
 

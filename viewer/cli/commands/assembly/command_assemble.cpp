@@ -132,13 +132,11 @@ scenes::Verdict runPlanned(const AssembleArguments& given,
     const std::string name = fs::path(part.scene.scene).stem().string();
     if (!scene_files[i].has_steps) {
       std::printf(
-          "\n%s\nNo part of this subassembly can be taken off, so it was not run; the plan names what is in "
-          "the way.\n",
+          "\n%s\nThe plan found no path for any part of this subassembly, so it was not run; the plan names "
+          "what is in the way.\n",
           name.c_str());
-      const scenes::Judgement judged =
-          scenes::judge({.blocked = "no part of this subassembly can be taken off"});
-      whole = scenes::worse(whole, judged.verdict);
-      table.add({name, words(judged.verdict), "-"});
+      whole = scenes::worse(whole, scenes::Verdict::NotShown);
+      table.add({name, words(scenes::Verdict::NotShown), "-"});
       return;
     }
     part.out = (fs::path(given.out) / name).string();
@@ -181,13 +179,15 @@ int runCad(AssembleArguments given) {
         "has one part, so there is nothing to assemble; give the files of the other parts too, or "
         "use `vps simulate`");
   if (planned.steps == 0) {
-    std::printf("No part can be taken off, so nothing was run; the plan names what is in the way.\n");
+    std::printf(
+        "The plan found no path for any part, so nothing was run; the plan names what is in the way.\n");
     return planned.status;
   }
   given.plan = {};
   const scenes::Verdict verdict = runPlanned(given, planned.scene_files);
-  const scenes::Evidence of_plan{.blocked = planned.status == kGood ? "" : "the plan names blocked parts"};
-  return scenes::exitStatusOf(scenes::worse(verdict, scenes::judge(of_plan).verdict));
+  // A part without a path was not run.
+  const scenes::Verdict of_plan = planned.status == kGood ? scenes::Verdict::Fits : scenes::Verdict::NotShown;
+  return scenes::exitStatusOf(scenes::worse(verdict, of_plan));
 }
 
 int runAssemble(const AssembleArguments& given) {

@@ -298,6 +298,7 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
     if (!step.stands_on.empty())
       note(name + "tried with '" + step.stands_on +
            "' placed at its target, although that part had not reached it.");
+    if (step.moved_m > 0) note(name + movedWords(step) + ".");
     if (!step.aligned_by.empty())
       note(name + "the part lies within its tolerance; later steps use it at its exact target, since '" +
            step.aligned_by + "' aligns it.");

@@ -25,6 +25,11 @@ const char* words(scenes::Verdict verdict) {
   return scenes::rowOf(verdict).words;
 }
 
+std::string movedWords(const scenes::StepResult& step) {
+  return "as drawn the part overlaps another one, so it was brought to a place without overlap, " +
+         html::format(1e3 * step.moved_m, "%.4f mm") + " from the drawn one";
+}
+
 std::string contactWords(const scenes::StepResult& step) {
   if (!step.completed)
     return step.is_taken_off ? "no: the part did not come off" : "no: the part did not reach its target";

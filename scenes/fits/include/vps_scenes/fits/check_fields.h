@@ -211,6 +211,11 @@ inline constexpr auto kMovedPartFields = std::make_tuple(
         },
         "rotation of the part after the motion, as a unit quaternion"));
 
+inline constexpr auto kCheckedGroupFields = std::make_tuple(
+    field("parts", &CheckedGroup::parts, "parts that overlaps, as drawn, connect with each other"),
+    field("verdict", &CheckedGroup::verdict, "as `places.verdict`, for the parts of this group"),
+    field("reason", &CheckedGroup::reason, "reason for a verdict other than `fits`, in words"));
+
 inline constexpr auto kCheckedPlacesFields = std::make_tuple(
     field("verdict", &CheckedPlaces::verdict,
           "`fits`: no parts overlap as drawn, or after the parts of `moved` are moved; `blocked`: it is "

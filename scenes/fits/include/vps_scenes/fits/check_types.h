@@ -237,6 +237,13 @@ struct MovedPart {
   Pose X_WP;  ///< pose after the motion
 };
 
+/// Parts that overlaps connect, and whether they can be freed from each other.
+struct CheckedGroup {
+  std::vector<std::string> parts;   ///< sorted
+  Verdict verdict = Verdict::Fits;  ///< as CheckedPlaces::verdict, for these parts
+  std::string reason;               ///< reason for a verdict other than Fits, in words
+};
+
 /// Whether the parts can be assembled. The question differs from whether the parts overlap as drawn: a part
 /// that is drawn 50 um inside its neighbour is free if its play lets it move away by 50 um. The search looks
 /// for places at which no parts overlap and no part is farther from its drawn place than its tolerance
@@ -248,6 +255,9 @@ struct CheckedPlaces {
   Verdict verdict = Verdict::Fits;
   std::vector<MovedPart> moved;  ///< the parts that were moved; filled also where other overlaps remain
   std::string reason;            ///< reason for a verdict other than Fits, in words
+  /// Every part that clashes as drawn is in one group at least. Once a group is proven blocked, the remaining
+  /// groups are only asked for the proofs that take no search.
+  std::vector<CheckedGroup> groups;
 };
 
 /// The result of a check.

@@ -15,6 +15,9 @@ VPS_VIEWER_API const char* words(scenes::Verdict verdict);
 
 /// Whether contact brought a step's part to its target: "yes", or "no: " and the reason.
 VPS_VIEWER_API std::string contactWords(const scenes::StepResult& step);
+/// Where the part was brought to, if its drawn place is one at which it overlaps another part
+/// (StepResult::moved_m).
+VPS_VIEWER_API std::string movedWords(const scenes::StepResult& step);
 
 /// The result of several tries: "Ease of assembly: 7 of 10 tries brought every part home."; empty for a
 /// single run.
