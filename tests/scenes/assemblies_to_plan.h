@@ -2,6 +2,8 @@
 // Small assemblies with a known order, for tests of planning. All of them are unions of convex prisms.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,6 +32,14 @@ inline Scene sceneOf(const std::vector<DrawnPart>& parts) {
     scene.parts.back().X_WP = part.X_WP;
   }
   return scene;
+}
+
+/// Checks that no path of the plan leads through a part, by a measure that is independent of the search.
+inline void expectFreeWays(const std::vector<DrawnPart>& parts, const PlanResult& plan) {
+  for (const Scene& scene : plannedScenes(sceneOf(parts), plan))
+    for (const WayFault& fault : checkWays(scene))
+      ADD_FAILURE() << fault.part << " through " << fault.against << " by " << fault.depth_m << " at "
+                    << fault.at_W.transpose();
 }
 
 inline Mesh block(const Vec3& min, const Vec3& max) {

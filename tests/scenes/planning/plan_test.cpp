@@ -27,14 +27,6 @@ bool has(const std::vector<PlannedOrder>& order, const std::string& before, cons
 }
 using Names = std::vector<std::string>;
 
-/// Checks that no path of the plan leads through a part, by a measure that is independent of the search.
-void expectFreeWays(const std::vector<DrawnPart>& parts, const PlanResult& plan) {
-  for (const Scene& scene : plannedScenes(sceneOf(parts), plan))
-    for (const WayFault& fault : checkWays(scene))
-      ADD_FAILURE() << fault.part << " through " << fault.against << " by " << fault.depth_m << " at "
-                    << fault.at_W.transpose();
-}
-
 TEST(Plan, ABlockOnAPlateComesFromAbove) {
   const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
                                         at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})};
