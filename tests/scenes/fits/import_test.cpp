@@ -821,20 +821,21 @@ TEST(ImportPly, AFaceWithAMissingVertexIsRefused) {
 }
 
 /// A result that uses every member.
-import::RawCad smallCad(){import::RawCad cad;
-for (const char* name : {"one", ""}) {
-  import::RawPart part;
-  part.name = name;
-  part.mesh = makeSphere(0.1, 1);
-  part.X_WP(1, 2) = 0.1;
-  part.color = {0.1f, 0.2f, 0.3f};
-  cad.parts.push_back(part);
+scenes::import::RawCad smallCad() {
+  import::RawCad cad;
+  for (const char* name : {"one", ""}) {
+    import::RawPart part;
+    part.name = name;
+    part.mesh = makeSphere(0.1, 1);
+    part.X_WP(1, 2) = 0.1;
+    part.color = {0.1f, 0.2f, 0.3f};
+    cad.parts.push_back(part);
+  }
+  cad.warnings = {"first", "second"};
+  cad.unit_m = 0.001;
+  cad.open_shapes = import::Shapes::BoundBodies;
+  return cad;
 }
-cad.warnings = {"first", "second"};
-cad.unit_m = 0.001;
-cad.open_shapes = import::Shapes::BoundBodies;
-return cad;
-}  // namespace
 
 std::string messageOfReader(const std::function<import::RawCad(const Progress&)>& read) {
   try {
@@ -912,10 +913,9 @@ TEST(OwnProcess, EndsWithItsProgressAndLeavesNoChild) {
 }
 
 /// A reader that reports nothing and never ends.
-import::RawCad readForEver(const Progress&) {
-  for (;
-;) ::pause();
-}  // namespace vps::scenes
+scenes::import::RawCad readForEver(const Progress&) {
+  for (;;) ::pause();
+}
 
 TEST(OwnProcess, EndsWithItsProgressWhileTheLibrarySaysNothing) {
   int asked = 0;
@@ -1101,5 +1101,5 @@ TEST(ImportReal, OpenMeshesAreImportedWithAWarning) {
   EXPECT_NE(cad.warnings[0].find("open edges"), std::string::npos);
 }
 
-}  // namespace vps::scenes
+}  // namespace
 }  // namespace vps::scenes
