@@ -30,7 +30,7 @@ std::string checkCsv(const scenes::CheckResult& result);
 
 /// A line for each different fastener with the names of the parts; empty if there are no fasteners.
 std::string fastenerText(const std::vector<scenes::Fastener>& fasteners);
-/// Tables of the steps of all assemblies, and the parts that cannot be taken off.
+/// Tables of the steps of all assemblies, and the parts for which no path was found.
 std::string planTables(const scenes::PlanResult& plan);
 /// The result in one sentence.
 std::string planHeadline(const scenes::PlanResult& plan);
