@@ -6,6 +6,7 @@
 
 #include "judge/body_motion.h"
 #include "judge/overlap_judge.h"
+#include "scenes/assemblies_to_plan.h"
 #include "scenes/scene_part.h"
 #include "step/way_check.h"
 #include "support/lathe.h"
@@ -138,14 +139,38 @@ TEST(Verdict, AStepThatTheHandGaveUpHasTheErrorOfThatMoment) {
   EXPECT_GT(step.final_error_m, 1 * kMm);
 }
 
-TEST(Verdict, APegDrawnTooLongForItsBlindHoleIsBlockedByTheBottom) {
+// A peg that is 80 um too long for its drawn place stands 80 um higher. One that is 1.2 mm too long is
+// farther off than a drawing may be.
+TEST(Verdict, APegDrawnIntoTheBottomOfItsBlindHoleStandsHigherUnlessItIsFarTooLong) {
   Scene scene = pegInCup(80e-6);
   const AssembleResult result = assemble(scene);
-  EXPECT_EQ(result.verdict, Verdict::Blocked);
-  const StepResult& step = result.steps[0];
+  EXPECT_EQ(result.verdict, Verdict::Fits) << result.steps[0].reason;
+  EXPECT_NEAR(result.steps[0].moved_m, 80e-6, 2e-6);
+  EXPECT_EQ(result.steps[0].blocked_by, "");
+  Scene longer = pegInCup(1.2e-3);
+  const StepResult step = assemble(longer).steps[0];
+  EXPECT_EQ(step.verdict, Verdict::Blocked);
+  EXPECT_EQ(step.moved_m, 0);
   EXPECT_EQ(step.blocked_by, "cup");
-  EXPECT_NEAR(step.blocked_depth_m, 80e-6, step.blocked_error_m + 1e-7);
-  EXPECT_NEAR(step.blocked_at_W.z(), -kDepth_m, 0.1 * kMm);
+  EXPECT_NEAR(step.blocked_depth_m, 1.2e-3, step.blocked_error_m + 1e-7);
+  EXPECT_NEAR(step.blocked_at_W.z(), -kDepth_m - 1.2 * kMm, 0.1 * kMm);
+}
+
+// A key that is 20 um too wide for its slot: no place without overlap is found, and the depth is too small
+// for a proof, since parts may be drawn that far off.
+TEST(Verdict, AnOverlapForWhichNeitherAPlaceNorAProofIsFoundIsNotShown) {
+  Mesh slot = block({-20 * kMm, -9 * kMm, -4 * kMm}, {20 * kMm, 9 * kMm, 0});
+  append(slot, block({-20 * kMm, 5 * kMm, 0}, {20 * kMm, 9 * kMm, 4 * kMm}));
+  append(slot, block({-20 * kMm, -9 * kMm, 0}, {20 * kMm, -5 * kMm, 4 * kMm}));
+  Scene scene =
+      sceneOf({scenePart("slot", slot, Vec3::Zero(), true),
+               scenePart("key", makeBox({16 * kMm, 10.02 * kMm, 3 * kMm}), {0, 0, 1.5 * kMm}, false)},
+              1 * kMm);
+  const StepResult step = checkDrawnTargets(scene, {}).front();
+  EXPECT_EQ(step.blocked_by, "");
+  EXPECT_EQ(step.moved_m, 0);
+  EXPECT_NE(step.overlap_doubt.find("nothing proves"), std::string::npos) << step.overlap_doubt;
+  EXPECT_EQ(assemble(scene).verdict, Verdict::NotShown);
 }
 
 // Parts that are laid out next to each other, as for printing, reach their targets, but the run proves
@@ -156,26 +181,30 @@ TEST(Verdict, APartThatBelongsNowhereNearAnotherIsNotShownToFit) {
                     scenePart("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm + gap_m}, false)},
                    1 * kMm);
   };
-  const StepResult apart = checkDrawnTargets(scene(20 * kMm), {}).front();
+  Scene far = scene(20 * kMm), near = scene(0);
+  const StepResult apart = checkDrawnTargets(far, {}).front();
   EXPECT_NE(apart.mesh_doubt.find("nowhere near another part"), std::string::npos) << apart.mesh_doubt;
-  EXPECT_EQ(checkDrawnTargets(scene(0), {}).front().mesh_doubt, "");
+  EXPECT_EQ(checkDrawnTargets(near, {}).front().mesh_doubt, "");
 }
 
-TEST(Verdict, ABlockDrawnInsideAPlateIsBlockedUnlessTheSceneAllowsIt) {
+TEST(Verdict, ABlockDrawnInsideAPlateStandsHigherUnlessItIsDrawnTooDeep) {
   const auto scene = [](double deep_m) {
     return sceneOf(
         {scenePart("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
          scenePart("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm - deep_m}, false)},
         1 * kMm);
   };
-  Scene deep = scene(90e-6);
+  for (const double deep_m : {2e-6, 90e-6}) {  // the block stands on the plate, higher than drawn
+    Scene shallow = scene(deep_m);
+    const AssembleResult result = assemble(shallow);
+    EXPECT_EQ(result.verdict, Verdict::Fits) << result.steps[0].reason;
+    EXPECT_NEAR(result.steps[0].moved_m, deep_m, 1.5e-6);
+  }
+  Scene deep = scene(0.7 * kMm);
   const AssembleResult result = assemble(deep);
   EXPECT_EQ(result.verdict, Verdict::Blocked);
   EXPECT_EQ(result.steps[0].blocked_by, "plate");
-  EXPECT_NEAR(result.steps[0].blocked_depth_m, 90e-6, 0.3e-6);
-  // A flat face has no chord error, so that even a small overlap is proven.
-  Scene shallow = scene(2e-6);
-  EXPECT_EQ(assemble(shallow).verdict, Verdict::Blocked);
+  EXPECT_NEAR(result.steps[0].blocked_depth_m, 0.7 * kMm, 0.3e-6);
   Scene touching = scene(0);
   EXPECT_EQ(assemble(touching).verdict, Verdict::Fits);
 }

@@ -230,7 +230,7 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   if (settings.has_fits && settings.has_places && settings.only_parts.empty())
     result.places = freePlaces(placed, result, progress);
   else if (result.clashes() > 0)
-    result.places = {Verdict::NotShown, {}, "places without overlap were not searched for"};
+    result.places = {Verdict::NotShown, {}, "places without overlap were not searched for", {}};
   result.places_wall_s = lap_s();
   if (!settings.has_fits) result.fits.clear();
   if (settings.has_sections) result.sections = checkSections(placed, result, progress);

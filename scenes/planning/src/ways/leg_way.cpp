@@ -55,7 +55,6 @@ class LegSearch {
     for (const std::size_t d : axes) straight_.push_back({motions.directions()[d], Vec3::Zero(), false});
     if (parts.size() > 1) return;
     for (const CheckedFit& fit : motions.fitsOf(parts.front())) {
-      fit_axes_.push_back({fit.axis_W, fit.at_W, true});
       if (fit.kind != FitKind::Shaft || hasTurnAbout(fit)) continue;
       for (const double sign : {1.0, -1.0}) turns_.push_back({sign * fit.axis_W, fit.at_W, true});
     }
@@ -142,30 +141,22 @@ class LegSearch {
     if (!is_known) out.push_back({d, Vec3::Zero(), false});
   }
 
-  /// The motions that lead away from contacts which stop straight motions: a slide along the contact; a turn
-  /// about the contact, by which the middle of the part continues; and a screw about an axis of the part or
-  /// of a fit whose advance slides along the contact, as helical teeth do.
+  /// The motions that lead away from a contact which stops a straight motion: a slide along the contact, and
+  /// a turn about the contact by which the middle of the part continues.
   void addByContact(const Place& from, const Vec3& d, const Contact& at, std::vector<Motion>& straight,
                     std::vector<Motion>& turns) const {
     constexpr double kFlat = 0.1;  // sine below which two directions count as parallel
     const Vec3 slide = d - d.dot(at.n_W) * at.n_W;
     if (slide.norm() > kFlat) addStraight(slide.normalized(), straight);
+    // Where faces touch, the contact is any point of them: the turn is also tried about an axis of the part.
     const Vec3 arm = from.X_W * center_W_ - at.p_W;
-    if (const Vec3 axis = arm.cross(d); axis.norm() > kFlat * arm.norm())
+    if (const Vec3 axis = arm.cross(d); axis.norm() > kFlat * arm.norm()) {
       turns.push_back({axis.normalized(), at.p_W, true});
-    std::vector<Motion> axes = fit_axes_;
-    for (int i = 0; i < 3; ++i)
-      axes.push_back({motions_.parts()[parts_.front()].X_WP.R.col(i), center_W_, true});
-    for (Motion axis : axes) {
-      axis.direction = from.X_W.R * axis.direction;
-      axis.center = from.X_W * axis.center;
-      if (std::abs(axis.direction.dot(d)) < 1 - 1e-6) continue;
-      const double along = at.n_W.dot(axis.direction),
-                   around_m = at.n_W.dot(axis.direction.cross(at.p_W - axis.center));
-      if (std::abs(along) < 1e-3 || std::abs(around_m) < 1e-3 * std::abs(along) * size_m_) continue;
-      axis.forward_m = -around_m / along;
-      if (axis.forward_m * axis.direction.dot(d) < 0) axis.direction = -axis.direction;
-      turns.push_back(axis);
+      const Mat3 R_W = from.X_W.R * motions_.parts()[parts_.front()].X_WP.R;
+      Eigen::Index nearest = 0;
+      (R_W.transpose() * axis).cwiseAbs().maxCoeff(&nearest);
+      const Vec3 along = R_W.col(nearest);
+      turns.push_back({along.dot(axis) > 0 ? along : Vec3(-along), at.p_W, true});
     }
   }
 
@@ -192,11 +183,7 @@ class LegSearch {
     }
     if (is_last) return std::nullopt;
     for (const Motion& motion : turns) {
-      // A screw ends where it has left its mates along its axis.
-      const double most = motion.forward_m == 0
-                              ? kTurn_rad
-                              : std::min(4 * kTurn_rad, 2 * size_m_ / std::abs(motion.forward_m));
-      const double s = reachOf(standing, motion, most).s;
+      const double s = reachOf(standing, motion, kTurn_rad).s;
       if (s > kLeastLeg) legs.emplace_back(motion, s);
     }
     // A stopped part may be as deep as allowed; the leg is shortened to a pose where the part is free.
@@ -263,7 +250,7 @@ class LegSearch {
   SearchWork& work_;
   double size_m_ = 0;
   Vec3 center_W_;
-  std::vector<Motion> straight_, turns_, fit_axes_;
+  std::vector<Motion> straight_, turns_;
   std::vector<Pose> seen_;
 };
 
