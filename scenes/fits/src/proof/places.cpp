@@ -290,7 +290,7 @@ class PlaceSearch {
     return tried;
   }
 
-  /// Moves the bodies so that the gaps of the touches open as far as possible.
+  /// Moves the bodies so that the gaps at the overlapping points (Touch) open as far as possible.
   void solve(Tried& tried, double e) const {
     Moving& moving = tried.moving;
     std::vector<GapRow> rows;

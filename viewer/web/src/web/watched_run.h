@@ -41,7 +41,7 @@ class WatchedRun {
  public:
   virtual ~WatchedRun() = default;
 
-  /// Reads the run's news. Call poll() before the functions below.
+  /// Receives what the run has reported since the last call. Call poll() before the functions below.
   virtual void poll() = 0;
   /// The scene; null: there is none yet. The pointer stays valid until number() changes.
   [[nodiscard]] virtual const scenes::Scene* scene() const = 0;
