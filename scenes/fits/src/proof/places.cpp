@@ -269,8 +269,8 @@ class PlaceSearch {
     }
     std::ranges::sort(names);
     return "wherever " + listed(names, kMostNamed) + " are within " + lengthInWords(kSightTolerance_m) +
-           " of where they are drawn, some of them overlap by " + lengthInWords(least_m + kContactDepth_m) +
-           " or more beyond the error";
+           " of where they are drawn, some of them overlap by at least " +
+           lengthInWords(least_m + kContactDepth_m) + " more than the error of their meshes";
   }
 
   /// The start of a try: the bodies that it moves, before the first step.
