@@ -19,8 +19,8 @@ using Row = std::array<int, kRanges>;  // um
 // Upper ends of the ranges of nominal sizes [mm]; a size at the end of a range belongs to that range.
 constexpr Row kUpTo_mm = {3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500};
 
-// Standard tolerances IT5 to IT11. ISO 286-1:2010, table 1. Above 3 mm, the tolerances are 7, 10, 16, 25, 40,
-// 64 and 100 times i = 0.45 cbrt(D) + 0.001 D [um, mm] at the geometric mean D of a range's ends, rounded.
+// Standard tolerances IT5 to IT11 (ISO 286-1:2010, table 1). Above 3 mm, they are 7, 10, 16, 25, 40, 64 and
+// 100 times i = 0.45 cbrt(D) + 0.001 D [um, mm] at the geometric mean D of a range's ends, rounded.
 constexpr std::array<Row, 7> kTolerance = {{
     {4, 5, 6, 8, 9, 11, 13, 15, 18, 20, 23, 25, 27},
     {6, 8, 9, 11, 13, 16, 19, 22, 25, 29, 32, 36, 40},
@@ -31,8 +31,8 @@ constexpr std::array<Row, 7> kTolerance = {{
     {60, 75, 90, 110, 130, 160, 190, 220, 250, 290, 320, 360, 400},
 }};
 
-// Fundamental deviations of shafts: the upper deviation of d to h, the lower deviation of k to p. ISO
-// 286-1:2010, tables 2 to 5; the deviation of k is that of the grades 4 to 7. Formulas: d 16 D^0.44, e 11
+// Fundamental deviations of shafts: the upper deviation of d to h, the lower deviation of k to p (ISO
+// 286-1:2010, tables 2 to 5); the deviation of k is that of the grades 4 to 7. Formulas: d 16 D^0.44, e 11
 // D^0.41, f 5.5 D^0.41, g 2.5 D^0.34, k 0.6 cbrt(D), m IT7 - IT6, n 5 D^0.34, p IT7 + 0 to 5.
 struct Letter {
   char letter;
