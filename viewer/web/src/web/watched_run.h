@@ -51,7 +51,7 @@ class WatchedRun {
   [[nodiscard]] virtual std::string doing() const = 0;
   /// The newest snapshot; empty if it was taken already.
   virtual std::optional<WatchedShot> takeShot() = 0;
-  /// The news since the last call.
+  /// The messages and verdicts since the last call.
   virtual std::vector<WatchedNews> takeNews() = 0;
   /// Moves the part in hand; null: the page may not move it. The pointer stays valid until number() changes.
   [[nodiscard]] virtual HandDrag* drag() = 0;
