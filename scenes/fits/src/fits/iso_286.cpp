@@ -50,8 +50,8 @@ constexpr std::array<Letter, 9> kShafts = {{
     {'p', {6, 12, 15, 18, 22, 26, 32, 37, 43, 50, 56, 62, 68}},
 }};
 
-// Hole-basis fits first, then shaft-basis fits, as ISO 286-1:2010, annex B recommends them; finer fits
-// precede coarser ones.
+// The fits that ISO 286-1:2010, annex B recommends: first hole-basis fits, then shaft-basis fits, and finer
+// fits before coarser fits.
 constexpr std::array kFits = {"H6/h5", "H7/h6", "H7/g6", "H7/k6", "H7/m6",  "H7/n6",   "H7/p6",  "H8/h7",
                               "H7/f7", "H8/f7", "H8/e8", "G7/h6", "F8/h6",  "H9/h9",   "H8/d9",  "F8/h9",
                               "E8/h9", "H9/e9", "H9/d9", "D9/h9", "H11/h9", "H11/h11", "D10/h9", "H11/d11"};
