@@ -178,7 +178,7 @@ TopoDS_Shape chamfered(const TopoDS_Shape& shape, double size,
   for (int i = 1; i <= edges.Extent(); ++i) {
     const TopoDS_Edge edge = TopoDS::Edge(edges(i));
     const Bnd_Box box = boxOf(edge);
-    // An edge that is tangent to an added one belongs to the contour of that one.
+    // An edge that is tangent to an added edge belongs to the contour of the added edge.
     if (accepts(box.CornerMin(), box.CornerMax()) && maker.Contour(edge) == 0) maker.Add(size, edge);
   }
   return checked(maker.Shape(), "chamfer");
@@ -280,7 +280,7 @@ TopoDS_Shape makeCover() {
   });
 }
 
-/// Cap screw after ISO 4762 M4 x 16, with a smooth shank, since no thread is modelled. Origin under the head.
+/// Cap screw after ISO 4762 M4 x 16, with a smooth shank for its thread. The origin is under the head.
 TopoDS_Shape makeScrew() {
   const double r = 2, head = 3.5, c = 0.6, axial = c * std::sqrt(3.0);
   const TopoDS_Shape body = revolved({{0, -kScrewShank},

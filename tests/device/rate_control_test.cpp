@@ -54,7 +54,7 @@ TEST(RateControl, LongTurnsStayRotations) {
   const DeviceSample sample = held(control, d, 100);
   EXPECT_LT((sample.X_DH.R.transpose() * sample.X_DH.R - Mat3::Identity()).norm(), 1e-14);
   const Mat3 R = rotationFromVector(Vec3(0, 0, 0.8 * 100));
-  EXPECT_LT((sample.X_DH.R - R).norm(), 1e5 * 1e-15);  // a few roundings of 1e-16 each of 1e5 ticks
+  EXPECT_LT((sample.X_DH.R - R).norm(), 1e5 * 1e-15);  // in each of 1e5 ticks, a few roundings of 1e-16
 }
 
 TEST(RateControl, TheHandleStaysInTheWorkspaceAndItsVelocityIsThatOfItsMotion) {

@@ -164,7 +164,7 @@ class Window : public Program {
       std::copy_n(whole.at(0, y), 3 * static_cast<std::size_t>(crop.width), crop.at(0, y));
     return crop;
   }
-  /// The same picture after it is drawn in full and no longer changes.
+  /// The scene's picture (scenePicture()) once it is drawn in full and no longer changes.
   Image restingPicture() {
     Image last = scenePicture();
     int same = 0;  // drawing a picture in full may take longer than the interval between two comparisons

@@ -205,10 +205,10 @@ struct VoxLayout : CellBox {
   }
 };
 
-/// Allocates consecutive bricks for a layout and returns the first one's name, 0 for none. If the pool is
-/// full, the layout first moves to a larger one, and its bricks get new names. Not thread-safe for one
-/// layout; other layouts of the same pool may be read and written meanwhile. Throws LoadError for more bricks
-/// than names.
+/// Allocates consecutive bricks for a layout and returns the first one's name (VoxPool), 0 for none. If the
+/// pool is full, the layout first moves to a larger pool, in which its bricks get new names. Not thread-safe
+/// for one layout; other layouts of the same pool may be read and written meanwhile. Throws LoadError for
+/// more bricks than names.
 std::uint32_t takeBricks(VoxLayout& layout, std::size_t count);
 
 /// Copies the bricks that a layout uses to a new pool with room for `room` more. Mounting leaves unused

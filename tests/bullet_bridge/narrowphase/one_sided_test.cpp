@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pairs in which only one part's points are queried. These points must also find the contacts that the other
-// part's points would find.
+// Pairs in which only one part's points are queried. The queried part's points must also find the contacts
+// that the other part's points would find.
 #include <gtest/gtest.h>
 
 #include <algorithm>

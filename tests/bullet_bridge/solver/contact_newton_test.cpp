@@ -189,7 +189,7 @@ TEST(ContactNewton, SlidesWithTheForceBeyondFrictionAndSticksBelow) {
 }
 
 // Contacts with normals in all directions, either order of bodies, gaps, a moving floor, and pairs whose
-// contacts are not consecutive. The velocities must equal the velocities after very many sweeps.
+// contacts are not consecutive. ContactNewton must give the same velocities as ContactSweeps in many sweeps.
 struct Random : Cubes {
   static constexpr int kCubes = 15;
   explicit Random(unsigned seed) {

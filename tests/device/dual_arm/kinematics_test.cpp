@@ -329,7 +329,7 @@ TEST(Statics, MotorPowerIsHandlePower) {
     ASSERT_EQ(handleJacobian(p, X_DH, J), Status::Ok);
     Eigen::Matrix<double, 6, 1> twist;
     twist << V.w, V.v;
-    EXPECT_NEAR(efforts.dot(J * twist), power(F, V), 1e-9);  // powers of order 10 W, 14 digits
+    EXPECT_NEAR(efforts.dot(J * twist), power(F, V), 1e-9);  // powers are of order 10 W, so 10 digits
   }
 }
 

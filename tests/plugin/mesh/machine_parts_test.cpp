@@ -19,7 +19,7 @@ void expectClosedSolid(const Mesh& mesh) {
   EXPECT_TRUE(report.isClosed());
   EXPECT_EQ(report.shells, 1u);
   EXPECT_EQ(report.degenerate_triangles, 0u);
-  EXPECT_GT(massProperties(mesh).volume_m3, 0);  // outward
+  EXPECT_GT(massProperties(mesh).volume_m3, 0);  // the facets face outward
 }
 
 double leastDistance(const Mesh& of, const Mesh& points, const Pose& X_MP) {

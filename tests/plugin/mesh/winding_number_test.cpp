@@ -12,7 +12,7 @@
 namespace vps::test {
 namespace {
 
-/// One arc tangent per triangle, as in the paper: a reference for the exact sum.
+/// One arc tangent per triangle, as in van Oosterom and Strackee 1983: a reference for the exact sum.
 double byArcTangents(const Mesh& mesh, const Vec3& p) {
   double angle_sr = 0;
   for (const auto& t : mesh.triangles) {

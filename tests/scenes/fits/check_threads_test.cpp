@@ -83,7 +83,7 @@ TEST(CheckThreads, ANutOnARodIsAThreadWithItsLeadAndHand) {
     EXPECT_NEAR(fit.shaft_m, 12e-3, fit.error_m + 1e-12);
     EXPECT_NEAR(fit.diametral_clearance_m, 2 * kRadial, fit.error_m + 1e-12);
     EXPECT_NEAR(std::abs(fit.axis_W.dot(X.R * Vec3::UnitZ())), 1, 1e-6);
-    // The nut's length, apart from the rounding of its ends.
+    // The nut's length; the ends of its thread are found to a tenth of the pitch.
     EXPECT_NEAR(fit.length_m, 6 * 1.75e-3, 0.1 * 1.75e-3);
   }
 }

@@ -83,7 +83,7 @@ TEST(WayClearance, IsThatToTheNearestPartThatIsPassed) {
   const PlanResult plan = planAssembly("test", parts, settings);
   const PlannedStep& step = plan.assemblies.front().steps.front();
   ASSERT_TRUE(step.clearance_m);
-  EXPECT_NEAR(*step.clearance_m, 1.5e-3, 2e-6);  // the search ends within a thousandth
+  EXPECT_NEAR(*step.clearance_m, 1.5e-3, 2e-6);  // the search ends within a thousandth of the distance
   EXPECT_EQ(step.nearest, "pillar");
   EXPECT_FALSE(step.fit_clearance_m);
 }

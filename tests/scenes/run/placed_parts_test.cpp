@@ -14,7 +14,7 @@
 namespace vps::scenes {
 namespace {
 
-/// Two plates 200 mm apart, each modelled where a pin of its own is set down on it.
+/// Two plates 200 mm apart; each plate has a contact model only where its own pin is set down.
 Scene pinsOnTwoPlates() {
   Scene scene;
   scene.file = scene.name = "pins";

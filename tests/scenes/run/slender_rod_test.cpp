@@ -79,7 +79,7 @@ TEST_P(SlenderRod, FindsItsHoleFromMostAims) {
 INSTANTIATE_TEST_SUITE_P(OfAllLengths, SlenderRod, testing::Values(5, 10, 20, 30, 40));
 
 // The play in the first hole allows an error of 0.3 mm at the second hole, so that finding it within a minute
-// is a matter of chance: 6 of 8 aims do, and which ones changes with any change of contact.
+// is a matter of chance: 6 of 8 aims find the hole, and any change of contact changes which.
 TEST(RodThroughTwoPlates, FindsTheSecondHoleAsWellFromMostAims) {
   int found = 0;
   std::string words;

@@ -54,7 +54,7 @@ std::string tightestText(const scenes::PlannedAssembly& assembly) {
          fixed(1e3 * *tightest->clearance_m, 3) + " mm.\n";
 }
 
-/// Describes the paths on which facets overlap more than drawn.
+/// Describes the paths on which facets overlap deeper than they do in the assembly as drawn.
 std::string allowanceText(const scenes::PlannedAssembly& assembly) {
   std::vector<std::string> names;
   double most_m = 0;

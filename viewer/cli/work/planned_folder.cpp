@@ -150,7 +150,7 @@ std::vector<scenes::WayFault> faultsOf(const scenes::PlanResult& plan, const Out
   return faults;
 }
 
-/// Plans. If the program is stopped, the results so far are kept in the folder.
+/// Plans the scene. If the program is stopped, the results so far are kept in the folder.
 scenes::PlanResult planned(const PlanArguments& given, const scenes::Scene& scene,
                            scenes::PlanSettings settings, ProgressBar& bar) {
   const std::string unfinished = (std::filesystem::path(given.out) / kUnfinishedPlan).string();

@@ -51,8 +51,8 @@ void selectPenaltyPoints(const PairView& pair, PairState& state) {
   storeSelection(candidates, pair, motion, selection);
 }
 
-// As reuseSelection() for rigid contact. Here the motion must be unchanged too, so that points that were out
-// of reach still are.
+// Reuses the contacts of a pair that has not moved, as reuseSelection() does in rigid contact. Here the
+// motion must be unchanged too, so that points that were out of reach still are.
 bool reusePenaltyPoints(const PairView& pair, PairState& state, CandidateMotion& moved) {
   const Selection& selection = state.selection;
   const RelativeMotion& motion = state.motion;

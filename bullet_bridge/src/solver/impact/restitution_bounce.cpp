@@ -14,10 +14,10 @@
 namespace vps::bullet {
 
 // The velocities before the step, referred to the end pose. The solution's impulses acted along lines at the
-// start poses, so the displacement changed the group's angular momentum. The difference of the angular
-// momenta is given back as a rotation of the whole group. Given back to each body, the difference would spin
-// a light body between heavy ones without bound: the error is 1 um times the impulse of bodies with 1e5 times
-// its inertia.
+// start poses, so the displacement changed the group's angular momentum. The angular momentum that the group
+// lost by this displacement is given back as a rotation of the whole group. Given back to each body alone, it
+// would spin a light body between heavy ones without bound: the error is 1 um times the impulse of bodies
+// with 1e5 times its inertia.
 std::vector<Vec6> Restitution::beforeStep(std::span<const BodyEnd> ends, double dt_s) const {
   std::vector<BodyEnd> group_ends;
   std::vector<Vec6> lost(group_.bodies.size(), Vec6::Zero());

@@ -78,8 +78,8 @@ class ContactLoop {
 /// Shortens the motion of bodies for which contacts are still missed: if points would be too deep at the end
 /// of the step, or sharp features too close, the bodies of the pair, and bodies connected to them by joints
 /// and loaded contacts, move only a share of the step (IslandBody::way_share). The bodies keep the velocities
-/// of the solution, so they hit nothing harder than was solved, and the next step begins near contacts that
-/// it then finds. A kinematic body is not shortened.
+/// of the solution, so their impacts are no faster than in the solution, and the next step begins near
+/// contacts that it then finds. A kinematic body is not shortened.
 /// @param contacts, joints  of the solved island
 /// @param push  the push, as from ContactSweeps::push()
 /// @return true if the motion of a body was shortened

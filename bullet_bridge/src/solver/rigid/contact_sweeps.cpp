@@ -203,7 +203,7 @@ void ContactSweeps::applyImpulses() {
             joint.row->impulse_Ns * joint.MinvJ[i];
 }
 
-// In the residual, an angular velocity of a joint counts as the velocity at a radius of 10 mm. Assumed.
+// In the residual, an angular velocity of a joint counts as the velocity at a radius of 10 mm (assumed).
 double ContactSweeps::sweepJoints() {
   double residual_m_s = 0;
   for (const JointState& joint : joint_states_) {

@@ -50,8 +50,8 @@ VPS_DEVICE_API JointVector jointVector(double plate, double link, double rotor) 
 /// p = d3 (c2 c1, c2 s1, s2).
 VPS_DEVICE_API Vec3 armPosition(const ArmJoints& joints) noexcept;
 
-/// Joints that reach p_A, t2 within +-90 deg. Singular (zero joints) at p_A = 0 or on the z axis; BadPose if
-/// not finite.
+/// Computes the joints that place the arm's end at p_A, with t2_rad within +-90 degrees. Singular at p_A = 0
+/// or on the z axis, BadPose if p_A is not finite; the joints are then unchanged.
 [[nodiscard]] VPS_DEVICE_API Status armInverse(const Vec3& p_A, ArmJoints& joints) noexcept;
 
 /// dp/d(t1, t2, d3), singular at t2 = +-90 deg.

@@ -185,10 +185,10 @@ double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& st
   return 0.5 * travel_m(part0, part1, start, end) * way.turn_rad() + 0.5 * curvature * slide_m * slide_m;
 }
 
-// True if edges cross at the end of the step, but not at its start, and come nearer than bendOf_m(). An edge
-// that slides past the end of another may dip below this edge on a curved path, although its contact holds it
-// at the end. The sliding edge then enters the next edge from that end, deeper than features are searched.
-// Along a fine rim an edge passes several such ends in a step.
+// True if edges cross at the end of the step, but not at its start, and come nearer than bendOf_m(). On a
+// curved path, an edge A that slides past an end of an edge B may dip below B, although the contact of A and
+// B holds A at the end of the step. Edge A then enters the edge that follows B from B's end, deeper than
+// features are searched. Along a fine rim an edge passes several such ends in a step.
 bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
                       const Pose& start, const Pose& end, Met& met, FeatureContact& contact) {
   FeatureContact before;

@@ -75,7 +75,7 @@ class CoherentWalk {
     const Mat3 unit = m / scale, square = unit.transpose() * unit;
     Eigen::SelfAdjointEigenSolver<Mat3> solver;
     solver.computeDirect(square, Eigen::EigenvaluesOnly);
-    // Two equal largest eigenvalues, as of a difference of rotations, are accurate to 1e-8.
+    // If the largest two eigenvalues are equal, as for a difference of rotations, both are accurate to 1e-8.
     return scale * std::sqrt(solver.eigenvalues()[2]) * (1 + 1e-6);
   }
 

@@ -14,7 +14,7 @@ inline double machineMemoryBytes() noexcept {
   return pages > 0 && page_bytes > 0 ? static_cast<double>(pages) * static_cast<double>(page_bytes) : 0;
 }
 
-/// Seconds of wall-clock time on a monotonic clock, from an arbitrary start. For reports.
+/// Seconds of wall-clock time on a monotonic clock, from an arbitrary start, for reports.
 inline double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }

@@ -211,7 +211,7 @@ FinishedMesh finished(const Mesh& mesh) {
   return out;
 }
 
-/// Welds the meshes of all parts: equal meshes once, different ones on all cores.
+/// Welds the meshes of all parts on all cores; equal meshes are welded only once.
 void weldAll(ImportedCad& cad) {
   EqualMeshes known;
   std::vector<std::size_t> own, source(cad.parts.size());

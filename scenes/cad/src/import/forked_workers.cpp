@@ -132,7 +132,7 @@ bool receive(Copy& copy) {
   return count > 0;
 }
 
-/// All copies. The destructor ends copies that still run.
+/// All copies of this process that were forked as workers. The destructor ends copies that still run.
 class Copies {
  public:
   ~Copies() {

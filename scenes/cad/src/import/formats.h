@@ -60,9 +60,9 @@ struct FormatRow {
   /// The format defines y as up, but many programs write z, and no file states which.
   bool is_up_open = false;
   bool has_no_unit = false;  ///< no file of the format states its unit
-  /// Version of the library. Set for a format whose parts are kept between runs (kept_cad.cpp).
+  /// Version of the library; null for a format whose parts are not kept between runs (kept_cad.cpp).
   std::string (*version)() = nullptr;
-  /// Reads some files of the format without the library and without a process of their own; tried first.
+  /// Reads some files of the format without the library and without a child process; called before `read`.
   std::optional<RawCad> (*read_here)(const std::string& file, const ImportSettings& settings) = nullptr;
 };
 

@@ -19,8 +19,8 @@ using Row = std::array<int, kRanges>;  // um
 // Upper ends of the ranges of nominal sizes [mm]; a size at the end of a range belongs to that range.
 constexpr Row kUpTo_mm = {3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500};
 
-// Standard tolerances IT5 to IT11. ISO 286-1:2010, table 1. Above 3 mm, the tolerances are 7, 10, 16, 25, 40,
-// 64 and 100 times i = 0.45 cbrt(D) + 0.001 D [um, mm] at the geometric mean D of a range's ends, rounded.
+// Standard tolerances IT5 to IT11 (ISO 286-1:2010, table 1). Above 3 mm, they are 7, 10, 16, 25, 40, 64 and
+// 100 times i = 0.45 cbrt(D) + 0.001 D [um, mm] at the geometric mean D of a range's ends, rounded.
 constexpr std::array<Row, 7> kTolerance = {{
     {4, 5, 6, 8, 9, 11, 13, 15, 18, 20, 23, 25, 27},
     {6, 8, 9, 11, 13, 16, 19, 22, 25, 29, 32, 36, 40},
@@ -31,8 +31,8 @@ constexpr std::array<Row, 7> kTolerance = {{
     {60, 75, 90, 110, 130, 160, 190, 220, 250, 290, 320, 360, 400},
 }};
 
-// Fundamental deviations of shafts: the upper deviation of d to h, the lower deviation of k to p. ISO
-// 286-1:2010, tables 2 to 5; the deviation of k is that of the grades 4 to 7. Formulas: d 16 D^0.44, e 11
+// Fundamental deviations of shafts: the upper deviation of d to h, the lower deviation of k to p (ISO
+// 286-1:2010, tables 2 to 5); the deviation of k is that of the grades 4 to 7. Formulas: d 16 D^0.44, e 11
 // D^0.41, f 5.5 D^0.41, g 2.5 D^0.34, k 0.6 cbrt(D), m IT7 - IT6, n 5 D^0.34, p IT7 + 0 to 5.
 struct Letter {
   char letter;
@@ -50,8 +50,8 @@ constexpr std::array<Letter, 9> kShafts = {{
     {'p', {6, 12, 15, 18, 22, 26, 32, 37, 43, 50, 56, 62, 68}},
 }};
 
-// Hole-basis fits first, then shaft-basis fits, as ISO 286-1:2010, annex B recommends them; finer fits
-// precede coarser ones.
+// The fits that ISO 286-1:2010, annex B recommends: first hole-basis fits, then shaft-basis fits, and finer
+// fits before coarser fits.
 constexpr std::array kFits = {"H6/h5", "H7/h6", "H7/g6", "H7/k6", "H7/m6",  "H7/n6",   "H7/p6",  "H8/h7",
                               "H7/f7", "H8/f7", "H8/e8", "G7/h6", "F8/h6",  "H9/h9",   "H8/d9",  "F8/h9",
                               "E8/h9", "H9/e9", "H9/d9", "D9/h9", "H11/h9", "H11/h11", "D10/h9", "H11/d11"};

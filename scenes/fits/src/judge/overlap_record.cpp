@@ -32,8 +32,8 @@ std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& mo
   return bodies;
 }
 
-/// OverlapVerdict::unsearched_m. A search with a sufficient budget of work leaves no interval above its
-/// tolerance; the result is then 0.
+/// Computes OverlapVerdict::unsearched_m. A search with a sufficient budget of work leaves no interval above
+/// its tolerance; the result is then 0.
 double unsearched_m(const MotionJudge& motions, double least_m) {
   const double decided_m = std::max(motions.deepestOfAll().depth_m, least_m);
   const double bound_m = motions.bound_m();

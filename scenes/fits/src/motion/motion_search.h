@@ -70,7 +70,7 @@ enum class CrossingDepth {
 /// Manocha, C2A, 2009.
 class MotionSearch {
  public:
-  /// Greatest depth to which the facets of parts in contact may penetrate each other.
+  /// The rest depth: greatest depth to which the facets of parts in contact may penetrate each other.
   static constexpr double kRest_m = 0.1e-6;
 
   /// @param part  must outlive the search

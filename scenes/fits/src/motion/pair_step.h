@@ -15,8 +15,8 @@ struct MovingPair {
   const PartSurface& held;
   Pose X_HM;
   Motion motion;  ///< motion of the moving part, in the frame of the held part
-  /// Greatest depth to which facets may penetrate each other, since facets in contact overlap by rounding and
-  /// facets of flush curved faces cross.
+  /// The rest depth: greatest depth to which facets may penetrate each other, since facets in contact overlap
+  /// by rounding and facets of flush curved faces cross.
   double rest_m = 0;
 };
 

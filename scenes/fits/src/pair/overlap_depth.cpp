@@ -74,7 +74,7 @@ struct WayOut {
 
 /// Divides a piece. At three of four levels, the piece is cut where two ways out are equally long, or else
 /// across the direction in which the distance changes. Distances often do not change along the perpendicular
-/// direction, so that cuts across the latter would make many small pieces.
+/// direction, so that cuts across this direction would make many small pieces.
 /// @param n normal of the piece's plane
 Halves divided(const SurfacePiece& piece, int level, const Vec3& n, const WayOut& middle,
                const WayOut& other) {

@@ -269,8 +269,8 @@ class PlaceSearch {
     }
     std::ranges::sort(names);
     return "wherever " + listed(names, kMostNamed) + " are within " + lengthInWords(kSightTolerance_m) +
-           " of where they are drawn, some of them overlap by " + lengthInWords(least_m + kContactDepth_m) +
-           " or more beyond the error";
+           " of where they are drawn, some of them overlap by at least " +
+           lengthInWords(least_m + kContactDepth_m) + " more than the error of their meshes";
   }
 
   /// The start of a try: the bodies that it moves, before the first step.
@@ -290,7 +290,7 @@ class PlaceSearch {
     return tried;
   }
 
-  /// Moves the bodies so that the gaps of the touches open as far as possible.
+  /// Moves the bodies so that the gaps at the overlapping points (Touch) open as far as possible.
   void solve(Tried& tried, double e) const {
     Moving& moving = tried.moving;
     std::vector<GapRow> rows;

@@ -126,9 +126,9 @@ class Link {
   [[nodiscard]] virtual WireForm form() const noexcept { return WireForm::Exact; }
 
   // The functions below may call the system.
-  /// Over UDP, waits until a message comes, at most `most_ns`; only a thread with nothing else to do may
-  /// wait, and only one thread at a time. In shared memory the call returns at once, since shared memory does
-  /// not signal arrivals.
+  /// Waits over UDP until a message comes, at most `most_ns`; only a thread with nothing else to do may wait,
+  /// and only one thread at a time. In shared memory the call returns at once, since shared memory does not
+  /// signal arrivals.
   virtual void waitForMessage(std::int64_t /*most_ns*/) const {}
   /// Whether a live process has the role.
   [[nodiscard]] virtual bool isAlive(NodeRole role) const = 0;

@@ -43,7 +43,7 @@ struct DenseBase {
   Pose X_GP;              ///< pose of the part in the frame of the grasp
 };
 
-/// Decides which states are sent whole, and writes the dense ones. Never allocates.
+/// Decides which states are sent whole, and writes the other states in the dense form. Never allocates.
 class DenseWriter {
  public:
   /// Returns false if the state has to be sent whole; then nothing is written and `number` is not used.
@@ -55,7 +55,7 @@ class DenseWriter {
   static constexpr int kWholeEvery = 64;
   static constexpr int kWholeAfterNews = 8;  ///< whole states in a row after a change, since some may be lost
   static constexpr int kAtLeast =
-      4;  ///< dense states between two whole ones that are due to slowly changing values
+      4;  ///< least number of dense states before a whole state that only slowly changing values need
 
   bool isDue(bool is_news, bool is_wished) noexcept;
 

@@ -22,7 +22,7 @@ namespace vps::scenes {
 /// The first of run.mcap, run-2.mcap, ... that does not exist, so that no earlier run is lost.
 std::string unusedFile(const std::string& wanted);
 
-/// Facts of the current run. Thread-safe.
+/// The facts about the current run that requests need. Thread-safe.
 class ServedRun {
  public:
   /// @param link  must stay valid until end()

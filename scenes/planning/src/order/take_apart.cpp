@@ -192,8 +192,8 @@ class TakingApart {
     return {slopeOfPart(part, motions_.directions()[d]), last_ == d ? 0 : 1};
   }
 
-  /// As slopeOf(), but a part that has a round fit, even with a part that has already left, prefers
-  /// directions along this fit to directions across it: a nut leaves along its bolt.
+  /// Sort key of a direction, as slopeOf(), but a part that has a round fit, even with a part that has
+  /// already left, prefers directions along this fit to directions across it: a nut leaves along its bolt.
   [[nodiscard]] int slopeOfPart(std::size_t part, const Vec3& direction_W) const {
     constexpr int kUp = 0, kAlongFit = 1, kMore = 2;
     const int slope = slopeOf(motions_, direction_W);

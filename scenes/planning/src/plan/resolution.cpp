@@ -68,8 +68,8 @@ class ChoiceWords {
       words += "voxels of " + group.voxel + " for " + listOf(group.names);
       if (!group.missed.empty())
         words +=
-            " (" + group.missed + " is less than eight voxels, so that its contacts may be missed" +
-            (group.names.size() > 1 ? ", also on the other parts" : "") +
+            " (" + group.missed + " is less than eight voxels, so that contacts there may be missed" +
+            (group.names.size() > 1 ? ", as may contacts at small features of the other parts" : "") +
             "; smaller voxels would exceed the memory limit of the automatic choice: set [fidelity] voxel)";
     }
     return words;

@@ -45,7 +45,7 @@ StudyEffect effectOf(const StudyVariable& variable, std::size_t index, const Stu
   const auto count = static_cast<double>(result.runs.size());
   effect.yield_if_halved = good / weights;
   effect.gain = effect.yield_if_halved - result.yield;
-  // The delta method is used, since both yields are computed from the same runs.
+  // The variance is that of the delta method, since both yields are computed from the same runs.
   double squares = 0;
   for (const StudyRun& run : result.runs) {
     const double passed = isGood(run.verdict) ? 1 : 0;

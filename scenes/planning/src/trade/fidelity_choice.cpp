@@ -129,12 +129,12 @@ bool Chooser::hasRoomForMaps(double voxel_m) {
   const bool fits_machine =
       machine_bytes == 0 || 2 * bytes <= machine_bytes;  // each map counts twice: in its part, and cooked
   if (fits_wish && fits_machine) return true;
-  char words[250];
+  char words[300];
   std::snprintf(
       words, sizeof words,
       "the maps for the next voxel size, %.3g um, would need about %.3g MB%s, but only %.3g MB%s; allow a "
       "larger tolerance, or %s",
-      1e6 * voxel_m, 1e-6 * bytes, fits_wish ? " twice" : "",
+      1e6 * voxel_m, 1e-6 * bytes, fits_wish ? " twice (in the parts and in the cooked field)" : "",
       1e-6 * (fits_wish ? machine_bytes : *wish_.memory_bytes),
       fits_wish ? ", half of this machine's memory, may be used" : " are allowed",
       fits_wish ? "use a machine with more memory" : "more memory");

@@ -22,7 +22,7 @@ inline constexpr double kProbeStiffness_N_per_m3 = 1e12;
 /// Contact of one part with all fixed parts, computed from the models.
 struct ModelResponse {
   Wrench F_W;  ///< penalty wrench on the moving part about its origin, at kProbeStiffness_N_per_m3
-  std::size_t points = 0;  ///< number of points tested, both sides
+  std::size_t points = 0;  ///< number of points tested, by the sides of the fidelity
 };
 
 /// Queries all fixed parts as a haptic loop would, and sums their wrenches. The argument `moving` is the

@@ -7,8 +7,8 @@ namespace vps::scenes {
 
 namespace {
 
-/// If the safety chain keeps the clutch from moving, the run continues after this multiple of clutch_s.
-/// assumed.
+/// If the safety chain keeps the clutch from moving, the run continues after this multiple of clutch_s. The
+/// value is assumed.
 constexpr double kWaitLimit = 10;
 
 /// Share of a physics step that rounding errors may leave over.

@@ -97,8 +97,8 @@ std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, device::CouplingPor
                                                  const ReportFault& report, device::RunLog* log);
 /// Repeats a run of makeRealTimeDriver() in simulated time.
 /// @param events    the recorded events
-/// @param device    the recording, tapped
-/// @param settings  settings of the recorded loop, with physicsLimit_s()
+/// @param device    the recording, as the inner device of a TappedDevice
+/// @param settings  settings of the recorded loop; physics_limit_s as recorded, otherwise physicsLimit_s()
 std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<RecordedEvent> events,
                                                  device::Device& device, device::CouplingPort& port,
                                                  const device::LoopSettings& settings,

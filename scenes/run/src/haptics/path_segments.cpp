@@ -14,7 +14,7 @@ namespace vps::scenes {
 namespace {
 
 /// Margin of the device's workspace on each side of a segment, for aim errors and the search for a hole.
-/// assumed.
+/// The values are assumed.
 constexpr double kMargin_m = 20e-3, kMargin_rad = 0.1;
 /// Poses whose rotations differ by half a turn, within this margin, could be joined in either direction.
 constexpr double kHalfTurnMargin_rad = 1e-3;

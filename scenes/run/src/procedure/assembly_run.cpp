@@ -99,7 +99,7 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Assemble, options.models_everything);
   buildModels(scene, plan, options);
   RunTrace trace(scene, log);
-  const AssemblyWorld* faulty = nullptr;  // world of a failed run; set before the first tick
+  const AssemblyWorld* faulty = nullptr;  // null until the world is made; logEvent() reads its state
   AssemblyWorld world(scene, plan, hand, log, settings, options, [&](const std::string& fault) {
     if (faulty != nullptr) trace.logEvent(*faulty, device::RunEventKind::Note, "safety: " + fault);
   });

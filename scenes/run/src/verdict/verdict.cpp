@@ -35,7 +35,7 @@ struct Rule {
   std::string (*reason)(const Evidence&);
 };
 
-/// In order of precedence: the rules; only a proof by geometry gives the verdict Blocked, and such a proof
+/// The rules in order of precedence; only a proof by geometry gives the verdict Blocked, and such a proof
 /// needs no run.
 constexpr std::array kRules{
     Rule{[](const Evidence& e) { return !e.blocked.empty(); }, Verdict::Blocked,

@@ -21,7 +21,7 @@ bullet::SurfaceMaterial surfaceMaterial(const Material& material);
 /// The models of a moving part, with its material.
 bullet::ShapeModels shapeModels(const PartModel& model);
 
-/// A part in place.
+/// A part in place, by its index in Scene::parts.
 struct FixedPart {
   std::size_t part = 0;
   Pose X_WP;
@@ -36,7 +36,7 @@ struct FieldPart {
 
 /// The input of cookField().
 struct FieldOrder {
-  std::vector<FieldPart> parts;  ///< in the field's owner order
+  std::vector<FieldPart> parts;  ///< in the order of the field's owners
   std::shared_ptr<const VoxMap>
       below;  ///< merged map of the first parts, to which the other parts are added; null: none
   std::size_t below_count = 0;  ///< number of parts in `below`

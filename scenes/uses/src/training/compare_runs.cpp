@@ -18,7 +18,7 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::uint8_t kRest = static_cast<std::uint8_t>(TracePhase::Rest);  // RunTrace::phase
+constexpr std::uint8_t kRest = static_cast<std::uint8_t>(TracePhase::Rest);  // as in RunTrace::phase
 
 /// One step of a recording.
 struct RecordedStep {

@@ -63,9 +63,10 @@ std::function<int()> addPlan(CLI::App& command) {
   addCacheOptions(command, given->cad.cache);
   addPlanOptions(command, *given);
   command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
-  command.add_flag("--verify", given->is_verify,
-                   "plan nothing: check that the paths of a scene lead through no part in place and keep the "
-                   "clearance in the plan.json next to it, and that released parts are carried");
+  command.add_flag(
+      "--verify", given->is_verify,
+      "plan nothing: check that the scene's paths lead through no part in place and keep the clearances of "
+      "the plan.json in the scene's folder, and that each released part is carried by parts in place");
   addJsonOption(command, given->json);
   return [given] { return runPlan(*given); };
 }

@@ -25,8 +25,8 @@ namespace vps::viewer {
 
 namespace {
 
-/// Many more tasks than workers, so that no worker is idle for long at the end; few enough that starting a
-/// process for each task costs little.
+/// Number of tasks: many more than workers, so that no worker is idle for long at the end, and few enough
+/// that starting a process for each task costs little.
 constexpr std::size_t kDaskTasks = 64;
 
 struct StudyArguments {

@@ -125,8 +125,8 @@ std::string regionOf(const scenes::FieldPlan& step) {
 
 std::string tableOfSteps(const scenes::Scene& scene, const scenes::ExplainedModels& explained) {
   const bool is_measured = !explained.cost.is_estimated;
-  Table table({"<step", "<moves", "<within [mm]", "<against the field of", "<left out", "field MB", "points",
-               is_measured ? "cook [s]" : "<cooked"});
+  Table table({"<step", "<moves", "<within [mm]", "<tested against the field of", "<left out", "field MB",
+               "points", is_measured ? "cook [s]" : "<cooked"});
   for (std::size_t s = 0; s < explained.plan.steps.size(); ++s) {
     const scenes::FieldPlan& step = explained.plan.steps[s];
     const scenes::StepCost& cost = explained.cost.steps[s];

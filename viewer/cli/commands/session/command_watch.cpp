@@ -68,7 +68,7 @@ class Watching {
   /// Runs until the session is over or the user stops the program.
   void run() {
     while (!stopRequested()) {
-      const bool is_over = watcher_.isOver();  // asked first, so that the last messages are read
+      const bool is_over = watcher_.isOver();  // asked before the messages are read, so that none is missed
       readAll();
       if (is_over) return;
       std::this_thread::sleep_for(ros_ ? kWatchPoll : kLook);

@@ -33,7 +33,7 @@ struct FrameTargets {
   FrameTargets(int width, int height, int factor, bool is_draft);
 };
 
-/// The render targets whose size does not depend on the picture's.
+/// The render targets whose size does not depend on the size of the picture.
 struct ShadowTargets {
   static constexpr int kKeySize = 2048, kFloorSize = 256;
   static constexpr double kFloorRadii = 3;  ///< half the width of the floor's texture, in radii of the scene

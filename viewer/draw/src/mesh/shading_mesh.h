@@ -52,8 +52,8 @@ struct ShadingMesh {
   bool is_closed = false;
 };
 
-/// 28 degrees: less than a chamfer of 30 degrees, more than between the facets of tessellated cylinders (up
-/// to 20).
+/// The crease angle is 28 degrees: less than a chamfer of 30 degrees, and more than the angle between the
+/// facets of tessellated cylinders (up to 20).
 inline constexpr double kCreaseAngle_rad = 28 * 3.14159265358979323846 / 180;
 
 /// Builds the mesh for drawing; O(n log n) in the triangles.

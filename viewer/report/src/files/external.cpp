@@ -36,8 +36,8 @@ std::string contents(std::FILE* file) {
 
 std::string runProgram(const std::vector<std::string>& words, const std::string& input,
                        const std::string& missing) {
-  // Unnamed files instead of pipes: a full pipe could deadlock, and an early end of the program would raise
-  // SIGPIPE.
+  // Input and output go through unnamed files and not through pipes: a full pipe could deadlock, and an early
+  // end of the program would raise SIGPIPE.
   const File in(std::tmpfile()), messages(std::tmpfile());
   if (!in || !messages || std::fwrite(input.data(), 1, input.size(), in.get()) != input.size() ||
       std::fflush(in.get()) != 0)

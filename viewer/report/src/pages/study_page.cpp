@@ -16,7 +16,7 @@ namespace {
 using html::format;
 
 constexpr std::size_t kColumns = 30;
-// end of the axis in half tolerances; normally distributed deviations may exceed 1
+// End of the axis, in half tolerances; a normally distributed deviation may exceed 1.
 constexpr double kBeyond = 1.2;
 
 std::string percent(double share) {

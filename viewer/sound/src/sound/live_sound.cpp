@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFullScale_Pa = 0.2;  // 80 dB at the listener. assumed: the sound of a tool that is put down
 constexpr float kLiveBeepLevel = 0.1f;  // -20 dB, as in WAV files
-// Snapshots: half a second at 1 kHz; older snapshots are late and dropped.
+// Number of snapshots that may wait: half a second at 1 kHz. Older snapshots are too late and are dropped.
 constexpr std::size_t kMostWaiting = 500;
 
 float loudness(float pressure_Pa) {

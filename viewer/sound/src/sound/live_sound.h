@@ -92,7 +92,7 @@ class LastingOutput {
   LastingOutput(std::unique_ptr<SoundOutput> output, std::function<std::unique_ptr<SoundOutput>()> open,
                 double wait_s, std::function<void(const std::string&)> tell);
 
-  /// As SoundOutput::write(); does nothing while there is no card. Never throws.
+  /// Writes as SoundOutput::write() does; does nothing while there is no card. Never throws.
   void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L);
   /// Whether the output is open. Tries to open a lost output again, at most once every wait_s.
   bool isOpen();

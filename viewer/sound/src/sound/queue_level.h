@@ -61,7 +61,7 @@ class VPS_VIEWER_API QueueLevel {
   int rate_hz_;
   double period_s_, spare_s_, written_s_ = 0, turned_s_ = 0, begun_s_ = 0, calm_since_s_ = 0;
   bool has_begun_ = false;
-  Least left_;   ///< samples that still waited when the next ones were written
+  Least left_;   ///< samples that still waited when the next samples were written
   Least block_;  ///< samples written at once
   std::size_t gaps_ = 0;
 };

@@ -34,8 +34,8 @@ struct BrowserMessage {
 
 inline constexpr std::size_t kLongestBrowserMessage = 512;  ///< [bytes]
 
-/// Reads a message: a JSON object with one key. Empty if the text is no such object, the key is unknown, or a
-/// number is not finite or its magnitude exceeds 1e9. Does not throw.
+/// Reads a message. Empty if the text is not a JSON object with one key, the key is unknown, or a number is
+/// not finite or its magnitude exceeds 1e9. Does not throw.
 VPS_VIEWER_API std::optional<BrowserMessage> readBrowserMessage(std::string_view text) noexcept;
 
 }  // namespace vps::viewer

@@ -45,8 +45,8 @@ class WebHub {
   /// Handles a message of a browser. Returns false if the browser sends too many or invalid messages; close
   /// the browser's connection then.
   bool hear(int browser, std::string_view text, double now_s);
-  /// Reads the run's news and sends them to the browsers. Call poll() about as often as snapshots may be
-  /// sent.
+  /// Sends the browsers what the run has reported since the last call. Call poll() about as often as
+  /// snapshots may be sent.
   void poll(double now_s);
 
   /// The file of a part, requested as /part/RUN/PART/LEVEL.glb; null: there is none.

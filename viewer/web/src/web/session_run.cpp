@@ -69,7 +69,7 @@ class SessionRun final : public WatchedRun {
 
   void poll() override {
     if (watcher_ == nullptr) return look();
-    const bool is_over = watcher_->isOver();  // asked first, so that the last news is still read below
+    const bool is_over = watcher_->isOver();  // asked before the news is read, so that none is missed
     while (const auto news = watcher_->takeNews()) tell(*news);
     if (device_)
       if (std::string refusal = device_->takeRefusal(); !refusal.empty())

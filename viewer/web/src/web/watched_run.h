@@ -41,7 +41,7 @@ class WatchedRun {
  public:
   virtual ~WatchedRun() = default;
 
-  /// Reads the run's news. Call poll() before the functions below.
+  /// Receives what the run has reported since the last call. Call poll() before the functions below.
   virtual void poll() = 0;
   /// The scene; null: there is none yet. The pointer stays valid until number() changes.
   [[nodiscard]] virtual const scenes::Scene* scene() const = 0;
@@ -51,7 +51,7 @@ class WatchedRun {
   [[nodiscard]] virtual std::string doing() const = 0;
   /// The newest snapshot; empty if it was taken already.
   virtual std::optional<WatchedShot> takeShot() = 0;
-  /// The news since the last call.
+  /// The messages and verdicts since the last call.
   virtual std::vector<WatchedNews> takeNews() = 0;
   /// Moves the part in hand; null: the page may not move it. The pointer stays valid until number() changes.
   [[nodiscard]] virtual HandDrag* drag() = 0;

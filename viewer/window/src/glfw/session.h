@@ -51,7 +51,7 @@ struct Session {
   HandWork work;            ///< the parts that were put down so far
   bool is_at_work = false;  ///< shows `work` or its run; false: the tour
   std::size_t first_step = 0,
-              steps_known = 0;  ///< first step of the run; number of its steps that are done and noted
+              steps_known = 0;  ///< first step of the run; number of the run's steps that are done and noted
   std::vector<scenes::StepResult> before;  ///< steps that were done before the run
   int recordings = 0;                      ///< number of recordings begun
   std::string run_hand;                    ///< kind of device of the run

@@ -44,7 +44,7 @@ class VPS_VIEWER_API TappingHandle final : public device::Device {
   [[nodiscard]] device::DeviceLimits limits() const noexcept override;
   [[nodiscard]] std::string_view name() const noexcept override { return "tapping_handle"; }
 
-  /// As read() and write(), at a given time.
+  /// Read and write as read() and write() do, but at a given time.
   device::DeviceSample readAt(double time_s) noexcept;
   void writeAt(const Wrench& F_Ho_D, double time_s) noexcept;
 

@@ -118,7 +118,7 @@ void FollowedSession::poll() {
   if (sound_)
     if (const std::string news = sound_->takeNews(); !news.empty()) messages_.push_back(news);
   if (is_over_) return;
-  const bool is_over = watcher_->isOver();  // asked first, so that the last news is still read below
+  const bool is_over = watcher_->isOver();  // asked before the news is read, so that none is missed
   while (const auto news = watcher_->takeNews()) tell(*news);
   for (const std::string& doubt : watcher_->takeDoubts()) messages_.push_back(doubt);
   if (pointing_)

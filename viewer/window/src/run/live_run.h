@@ -22,7 +22,7 @@ struct LiveSettings {
   std::string record;           ///< file to record the run in; empty: none
   bool is_paused = false;       ///< the run begins paused
   double speed = 1;             ///< simulated seconds per real second; 0: as fast as possible
-  scenes::ModelOptions models;  ///< its `progress` is replaced
+  scenes::ModelOptions models;  ///< `models.progress` is replaced
   std::string hand;  ///< kind of device that moves the part; empty: the scene's kind. See isByPerson()
   std::shared_ptr<device::HandleWish> wish;  ///< pose that the mouse device reads
   bool has_sound = true;                     ///< plays sound, if there is a sound card

@@ -13,7 +13,7 @@
 
 namespace vps::viewer {
 
-/// Delay from physics to picture and sound. It covers the delays that differ between watchers: up to 17 ms
+/// Delay from physics to picture and sound, which covers the delays that differ between watchers: up to 17 ms
 /// until a window or page polls again, and a network with a delay of 20 ms and a jitter of 5 ms.
 inline constexpr std::int64_t kPresentAfter_ns = 50'000'000;
 

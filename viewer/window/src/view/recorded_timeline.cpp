@@ -41,7 +41,7 @@ scenes::Snapshot snapshotAt(const scenes::Scene& scene, const std::vector<RunTra
                               done.takes_off ? scenes::BodyRole::Waiting : scenes::BodyRole::Mounted};
   }
   const scenes::SceneStep& step = scene.steps[static_cast<std::size_t>(now.step)];
-  constexpr std::uint8_t kRest = 3;  // RunTrace::phase
+  constexpr std::uint8_t kRest = 3;  // scenes::TracePhase::Rest, in RunTrace::phase
   shot.time_s = now.time_s;
   shot.step = now.step;
   shot.bodies[step.part].role = now.phase == kRest ? scenes::BodyRole::Released : scenes::BodyRole::InHand;

@@ -23,7 +23,7 @@ enum class PartPer {
   /// Each solid, closed surface or object of the file. Open groups of an OBJ file that together are closed
   /// become one part, and so do connected shapes of VRML, since exporters write a shape for each face.
   Body,
-  Object,  ///< each object, group or shape of the file, also where open ones together form a closed surface
+  Object,  ///< each object, group or shape of the file, also where open shapes form a closed surface
   File,    ///< the whole file, under the file's name
 };
 

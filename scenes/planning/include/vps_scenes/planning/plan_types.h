@@ -100,7 +100,7 @@ struct PlannedContact {
   PairState state = PairState::Apart;
   double clearance_m = 0;         ///< least distance of the surfaces
   std::vector<std::string> fits;  ///< "shaft H7/g6", "thread M8", ...
-  std::vector<Vec3> blocked_W;    ///< unit directions, out of the likely ones, in which b stops a
+  std::vector<Vec3> blocked_W;    ///< likely directions (unit vectors) in which b stops a
   std::vector<Vec3>
       free_W;  ///< likely directions in which b does not stop a; b leaves a in the opposite directions
 };

@@ -76,7 +76,7 @@ struct StudyOptions : ModelOptions {
   std::function<void(const StudyRun&)> on_run;
 };
 
-/// Variables for all tolerances of the scene's parts, with sizes relative to the drawn ones. Throws LoadError
+/// Variables for all tolerances of the scene's parts, with sizes relative to drawn sizes. Throws LoadError
 /// for a scene without a tolerance, for an unknown class of ISO 286, and for a class on a part without a fit.
 VPS_SCENES_API std::vector<StudyVariable> studyVariables(const Scene& scene);
 

@@ -69,8 +69,8 @@ struct TradeRow {
   std::size_t points = 0, bytes = 0;
   bool has_probe = false, has_run = false, has_reference = false;
   ProbeErrors probe;
-  double points_read = 0;       ///< mean number of points tested by a query, both sides
-  TickTimes query, all_points;  ///< wrench query of a pose, both sides: with the tree, and over all points
+  double points_read = 0;       ///< mean number of points tested by a query, by the sides of the fidelity
+  TickTimes query, all_points;  ///< time of a wrench query: with the tree of points, and testing all points
   double models_wall_s = 0;     ///< time to build the models that no earlier row had built
   TradeRun run;
   RunErrors off;

@@ -42,9 +42,9 @@ VPS_VIEWER_API std::string missingForWeb();
 /// browser gets fewer snapshots and does not slow down others. Throws LoadError if the server cannot listen
 /// at the address, the token is too short, or the certificate cannot be used.
 VPS_VIEWER_API void serveSession(const WebOptions& options);
-/// As serveSession(), for runs of the scene in this process.
+/// Serves a page as serveSession() does, for runs of the scene in this process.
 VPS_VIEWER_API void serveScene(const scenes::Scene& scene, const WebOptions& options);
-/// As serveSession(), for a recording.
+/// Serves a page as serveSession() does, for a recording.
 VPS_VIEWER_API void serveRecording(const device::RecordedRun& run, const WebOptions& options);
 
 }  // namespace vps::viewer
