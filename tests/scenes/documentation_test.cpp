@@ -216,11 +216,12 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
   checkSection(
       readme, "trade",
       head + resultLines("rows[].", kTradeRowFields) + resultLines("wall.rows[].", kTradeRowWallFields));
-  checkSection(readme, "check",
-               head + resultLines("pairs[].", kCheckedPairFields) +
-                   resultLines("fits[].", kCheckedFitFields) + resultLines("parts[].", kCheckedPartFields) +
-                   resultLines("places.", kCheckedPlacesFields) +
-                   resultLines("places.moved[].", kMovedPartFields) + resultLines("wall.", kCheckWallFields));
+  checkSection(
+      readme, "check",
+      head + resultLines("pairs[].", kCheckedPairFields) + resultLines("fits[].", kCheckedFitFields) +
+          resultLines("parts[].", kCheckedPartFields) + resultLines("places.", kCheckedPlacesFields) +
+          resultLines("places.moved[].", kMovedPartFields) +
+          resultLines("places.groups[].", kCheckedGroupFields) + resultLines("wall.", kCheckWallFields));
   checkSection(readme, "plan",
                head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
                    resultLines("wall.", kPlanWallFields));
