@@ -3,9 +3,12 @@
 // and the same parts made so that they cannot leave.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include "scenes/assemblies_to_plan.h"
+#include "support/gear.h"
 #include "support/units.h"
 #include "vps_scenes/planning/plan.h"
 
@@ -72,6 +75,36 @@ TEST(ContactWays, ASlideWithPlayPassesANub) {
   expectLeaves(slideBeforeNub(100 * kUm, 85 * kUm), "100 um of play, a nub of 85");
   expectLeaves(slideBeforeNub(1 * kMm, 0.8 * kMm), "1 mm of play, a nub of 0.8");
   expectStays(slideBeforeNub(100 * kUm, 150 * kUm), "100 um of play, a nub of 150");
+}
+
+/// The gear, twisted around z to a helix.
+Mesh helical(Mesh gear, double helix_rad, double pitch_m) {
+  for (Vec3& v : gear.vertices) v = rotationFromVector({0, 0, v.z() * std::tan(helix_rad) / pitch_m}) * v;
+  return gear;
+}
+
+/// A helical gear on a pin of the base, in mesh with a gear that is part of the base.
+std::vector<DrawnPart> helicalPair(double helix_rad) {
+  const test::GearShape shape{.module_m = 2 * kMm,
+                              .teeth = 16,
+                              .width_m = 20 * kMm,
+                              .backlash_m = 0.2 * kMm,
+                              .other_radius_m = 5 * kMm,
+                              .points_per_tooth = 16,
+                              .axial_steps = 10,
+                              .radial_steps = 2};
+  const double pitch_m = test::pitchRadius(shape);
+  const Mesh gear = helical(test::makeSpurGear(shape), helix_rad, pitch_m);
+  const Pose half_tooth(rotationFromVector({0, 0, std::numbers::pi / shape.teeth}),
+                        Vec3(2 * pitch_m + 0.1 * kMm, 0, 0));
+  Mesh base = transformed(helical(test::makeSpurGear(shape), -helix_rad, pitch_m), half_tooth);
+  append(base, makeCylinder(4.95 * kMm, 24 * kMm, 64));
+  return {at("base", base, {0, 0, 0}), at("gear", gear, {0, 0, 0})};
+}
+
+TEST(ContactWays, AHelicalGearScrewsOutOfItsMate) {
+  for (const double helix_deg : {-10.0, 20.0})
+    expectLeaves(helicalPair(helix_deg * std::numbers::pi / 180), std::to_string(helix_deg));
 }
 
 }  // namespace

@@ -72,7 +72,9 @@ struct Motion {
       const double f = level + cosine * std::cos(s) + sine * std::sin(s) + rate * s;
       if (f <= 0) break;
       const double slope = sine * std::cos(s) - cosine * std::sin(s) + rate;
-      const double h = (slope + std::sqrt(slope * slope + 2 * swing * f)) / swing;
+      // Where f falls, the usual form of the root would be a difference of nearly equal numbers.
+      const double root = std::sqrt(slope * slope + 2 * swing * f);
+      const double h = slope < 0 ? 2 * f / (root - slope) : (slope + root) / swing;
       s += h;
       if (h < kLeast * s) break;
     }

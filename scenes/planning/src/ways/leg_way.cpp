@@ -55,6 +55,7 @@ class LegSearch {
     for (const std::size_t d : axes) straight_.push_back({motions.directions()[d], Vec3::Zero(), false});
     if (parts.size() > 1) return;
     for (const CheckedFit& fit : motions.fitsOf(parts.front())) {
+      fit_axes_.push_back({fit.axis_W, fit.at_W, true});
       if (fit.kind != FitKind::Shaft || hasTurnAbout(fit)) continue;
       for (const double sign : {1.0, -1.0}) turns_.push_back({sign * fit.axis_W, fit.at_W, true});
     }
@@ -141,8 +142,9 @@ class LegSearch {
     if (!is_known) out.push_back({d, Vec3::Zero(), false});
   }
 
-  /// The motions that lead away from a contact which stops a straight motion: a slide along the contact, and
-  /// a turn about the contact by which the middle of the part continues.
+  /// The motions that lead away from a contact which stops a straight motion: a slide along the contact; a
+  /// turn about the contact by which the middle of the part continues; and a screw about an axis of the part
+  /// or of a fit that slides along the contact, as helical teeth do.
   void addByContact(const Place& from, const Vec3& d, const Contact& at, std::vector<Motion>& straight,
                     std::vector<Motion>& turns) const {
     constexpr double kFlat = 0.1;  // sine below which two directions count as parallel
@@ -158,6 +160,36 @@ class LegSearch {
       const Vec3 along = R_W.col(nearest);
       turns.push_back({along.dot(axis) > 0 ? along : Vec3(-along), at.p_W, true});
     }
+    addScrews(from, d, at, turns);
+  }
+
+  /// The screws along d that slide along the contact: n . (a x r + forward a) = 0, where r leads from the
+  /// axis to the contact.
+  void addScrews(const Place& from, const Vec3& d, const Contact& at, std::vector<Motion>& turns) const {
+    // Assumed: an advance of less than a fiftieth of the part's size per radian is a thread, see screwWay().
+    constexpr double kAlong = 1e-6, kLeastAlong = 1e-3, kLeastForward = 0.02;
+    std::vector<Motion> axes = fit_axes_;
+    for (int i = 0; i < 3; ++i)
+      axes.push_back({motions_.parts()[parts_.front()].X_WP.R.col(i), center_W_, true});
+    std::vector<Motion> added;
+    for (const Motion& axis : axes) {
+      Motion screw{from.X_W.R * axis.direction, from.X_W * axis.center, true};
+      if (std::abs(screw.direction.dot(d)) < 1 - kAlong) continue;
+      const double along = at.n_W.dot(screw.direction);
+      const double around_m = at.n_W.dot(screw.direction.cross(at.p_W - screw.center));
+      if (std::abs(along) < kLeastAlong || std::abs(around_m) < kLeastForward * std::abs(along) * size_m_)
+        continue;
+      screw.forward_m = -around_m / along;
+      if (screw.forward_m * screw.direction.dot(d) < 0) screw.direction = -screw.direction;
+      // The axes of a fit and of the part are often the same line.
+      const bool is_known = std::ranges::any_of(added, [&](const Motion& other) {
+        return other.direction.dot(screw.direction) > 1 - kAlong &&
+               screw.direction.cross(other.center - screw.center).norm() < kAlong * size_m_;
+      });
+      if (!is_known) added.push_back(screw);
+    }
+    // Screws come first: where one slides along helical teeth, turns cost as much and lead nowhere.
+    turns.insert(turns.begin(), added.begin(), added.end());
   }
 
   /// Returns a path if the part leaves straight from this place; otherwise adds the places that it can reach.
@@ -183,8 +215,13 @@ class LegSearch {
     }
     if (is_last) return std::nullopt;
     for (const Motion& motion : turns) {
-      const double s = reachOf(standing, motion, kTurn_rad).s;
-      if (s > kLeastLeg) legs.emplace_back(motion, s);
+      // A screw ends where the part has left its mates along the axis.
+      const double most =
+          motion.forward_m == 0 ? kTurn_rad : std::min(kTurn_rad, 2 * size_m_ / std::abs(motion.forward_m));
+      const Reach reach = reachOf(standing, motion, most);
+      if (motion.forward_m != 0 && !reach.is_stopped)
+        if (std::optional<Way> way = wayBehind(from, {motion, most})) return way;
+      if (reach.s > kLeastLeg) legs.emplace_back(motion, reach.s);
     }
     // A stopped part may be as deep as allowed; the leg is shortened to a pose where the part is free.
     double rest_m = 0;
@@ -193,6 +230,17 @@ class LegSearch {
     for (const double share : kStops)
       for (const auto& [motion, s] : legs) addPlace(from, {motion, share * s}, waiting);
     return std::nullopt;
+  }
+
+  /// The path by a screw that nothing stops, and then straight along its axis.
+  std::optional<Way> wayBehind(const Place& from, const Leg& screw) {
+    const Vec3 out = screw.motion.forward_m > 0 ? screw.motion.direction : Vec3(-screw.motion.direction);
+    const Motion leaving{out, Vec3::Zero(), false};
+    if (!isFreeFrom(screw.motion.at(screw.s) * from.X_W, leaving)) return std::nullopt;
+    Way way{WayKind::Legs, from.legs, kNoDirection, 0};
+    way.legs.push_back(screw);
+    way.legs.push_back({leaving, motions_.leave_m()});
+    return way;
   }
 
   /// Whether a straight motion of this length is a leg. The play of a part makes legs too, at the beginning.
@@ -250,7 +298,7 @@ class LegSearch {
   SearchWork& work_;
   double size_m_ = 0;
   Vec3 center_W_;
-  std::vector<Motion> straight_, turns_;
+  std::vector<Motion> straight_, turns_, fit_axes_;
   std::vector<Pose> seen_;
 };
 
@@ -260,7 +308,7 @@ std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::siz
                           const std::vector<std::size_t>& held, SearchWork& work) {
   if (std::optional<Way> way = LegSearch(motions, parts, held, kAlongAxes, work).find()) return way;
   if (parts.size() > 1) return std::nullopt;
-  SearchWork more{work.most, 0};
+  SearchWork more{2 * work.most, 0};  // a place has three times the motions
   std::optional<Way> way = LegSearch(motions, parts, held, kByContacts, more).find();
   work.most += more.most;
   work.done += more.done;
