@@ -135,7 +135,7 @@ TEST_F(Plan, NothingToAssembleIsSaid) {
                              wall("box", {5, 25, 5}, {25, 30, 25}),
                              {"block", {10, 10, 5}, {20, 20, 15}}}));
   const Ran ran = run("assemble closed.obj --units mm --out none --no-pictures");
-  EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
+  EXPECT_EQ(ran.status, 3) << ran.out << ran.err;
   EXPECT_NE(ran.out.find("The plan found no path for any part"), std::string::npos) << ran.out << ran.err;
 }
 
@@ -283,7 +283,7 @@ TEST_F(Plan, ASubassemblyThatCannotBeTakenApartDoesNotKeepTheProductFromBeingRun
                               {"upright", {20, 18, -20}, {24, 22, 20}},
                               {"upright", {56, 18, -20}, {60, 22, 20}}}));
   const Ran ran = run("assemble product.obj --units mm --base plate --out run --no-pictures");
-  EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
+  EXPECT_EQ(ran.status, 3) << ran.out << ran.err;
   EXPECT_NE(
       ran.out.find(
           "\nsubassembly_1\nThe plan found no path for any part of this subassembly, so it was not run"),

@@ -76,12 +76,12 @@ void expectInOrder(const std::vector<LoadLevelChange>& load_changes) {
   }
 }
 
-/// True if the load was shed level by level down to the third, and no further.
+/// True if the load was shed level by level down to the third, and no further, without a fault of the loop.
 bool stoppedAtThree(const AssembleResult& result) {
   const std::vector<LoadLevelChange>& changes = result.real_time->load_changes;
   for (std::size_t i = 0; i < 3; ++i)
     if (i >= changes.size() || changes[i].to != static_cast<int>(i + 1)) return false;
-  return changes.back().to == 3;
+  return changes.back().to == 3 && result.real_time->faults == 0;
 }
 
 // 10 ms of load do not fit into periods of 4 and 8 ms, but into 16 ms. A machine that stops the run
