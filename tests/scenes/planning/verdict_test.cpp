@@ -158,7 +158,7 @@ TEST(Verdict, APegDrawnIntoTheBottomOfItsBlindHoleStandsHigherUnlessItIsFarTooLo
 
 // A key that is 20 um too wide for its slot: no place without overlap is found, and the depth is too small
 // for a proof, since parts may be drawn that far off.
-TEST(Verdict, AnOverlapForWhichNeitherAPlaceNorAProofIsFoundIsNotShown) {
+TEST(Verdict, AnOverlapForWhichNoPlaceIsFoundIsBlockedAsDrawnAndSaysThatItIsNotProven) {
   Mesh slot = block({-20 * kMm, -9 * kMm, -4 * kMm}, {20 * kMm, 9 * kMm, 0});
   append(slot, block({-20 * kMm, 5 * kMm, 0}, {20 * kMm, 9 * kMm, 4 * kMm}));
   append(slot, block({-20 * kMm, -9 * kMm, 0}, {20 * kMm, -5 * kMm, 4 * kMm}));
@@ -167,10 +167,10 @@ TEST(Verdict, AnOverlapForWhichNeitherAPlaceNorAProofIsFoundIsNotShown) {
                scenePart("key", makeBox({16 * kMm, 10.02 * kMm, 3 * kMm}), {0, 0, 1.5 * kMm}, false)},
               1 * kMm);
   const StepResult step = checkDrawnTargets(scene, {}).front();
-  EXPECT_EQ(step.blocked_by, "");
+  EXPECT_EQ(step.blocked_by, "slot");
   EXPECT_EQ(step.moved_m, 0);
   EXPECT_NE(step.overlap_doubt.find("nothing proves"), std::string::npos) << step.overlap_doubt;
-  EXPECT_EQ(assemble(scene).verdict, Verdict::NotShown);
+  EXPECT_EQ(assemble(scene).verdict, Verdict::Blocked);
 }
 
 // Parts that are laid out next to each other, as for printing, reach their targets, but the run proves

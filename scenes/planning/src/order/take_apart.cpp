@@ -62,6 +62,7 @@ class TakingApart {
     stopped_by_.resize(motions.parts().size());
     screws_.resize(motions.parts().size());
     legs_.resize(motions.parts().size());
+    by_contact_.resize(motions.parts().size());
     if (!progress) return;
     // A single search has no known end: its progress only reports activity, and lets the caller cancel.
     const auto count = static_cast<double>(remaining_.size() - fixed_.size());
@@ -107,7 +108,22 @@ class TakingApart {
       return legWay(motions_, {part}, without(remaining_, {part}), legs_[part]);
     });
     for (const std::size_t part : without(remaining_, fixed_)) work_of_legs_ += legs_[part].done;
+    if (found.parts.empty()) found = byContact();
     return found.parts.empty() ? groupByLegs() : found;
+  }
+
+  /// Searches paths that contacts suggest, for parts that no path along axes leads out. A place has three
+  /// times the motions, so that the limits are twice those of byLegs().
+  Removal byContact() {
+    constexpr std::uint64_t kOfPart = 4'000'000, kOfAll = 80'000'000;
+    const std::uint64_t left = kOfAll - std::min(kOfAll, work_by_contact_);
+    const std::uint64_t share = std::min(kOfPart, left / (remaining_.size() - fixed_.size()));
+    Removal found = alone([&](std::size_t part) {
+      by_contact_[part] = {share, 0};
+      return contactWay(motions_, part, without(remaining_, {part}), by_contact_[part]);
+    });
+    for (const std::size_t part : without(remaining_, fixed_)) work_by_contact_ += by_contact_[part].done;
+    return found;
   }
 
   /// The first of the smallest sets that has a path.
@@ -273,7 +289,7 @@ class TakingApart {
   }
 
   [[nodiscard]] Disassembly::Blocked blockedOf(std::size_t part) const {
-    Disassembly::Blocked blocked{part, {}, !legs_[part].isSpent()};
+    Disassembly::Blocked blocked{part, {}, !legs_[part].isSpent() && !by_contact_[part].isSpent()};
     // Only blocking parts that touch this part are reported; if no blocking part touches it, as for a link in
     // a chain, all blocking parts are reported.
     for (const bool has_to_meet : {true, false}) {
@@ -300,6 +316,8 @@ class TakingApart {
   std::vector<Screw> screws_;
   std::vector<SearchWork> legs_;  ///< by part: the work of the last search for legs of the part
   std::uint64_t work_of_legs_ = 0;
+  std::vector<SearchWork> by_contact_;  ///< by part: the work of the last search by contacts
+  std::uint64_t work_by_contact_ = 0;
   const std::function<void(const Removal&)>& on_removal_;
   Progress progress_;
   std::size_t last_ = 0;

@@ -94,7 +94,7 @@ class LegSearch {
     return out;
   }
 
-  /// How far the parts move, and with `contact` the point that stopped them.
+  /// How far the parts move; the point that stopped them is added to `contacts` if that is not null.
   Reach reachOf(const Standing& standing, const Motion& motion, double most,
                 std::vector<Contact>* contacts = nullptr) {
     Reach least{most, false, false, {}};
@@ -306,13 +306,13 @@ class LegSearch {
 
 std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::size_t>& parts,
                           const std::vector<std::size_t>& held, SearchWork& work) {
-  if (std::optional<Way> way = LegSearch(motions, parts, held, kAlongAxes, work).find()) return way;
-  if (parts.size() > 1) return std::nullopt;
-  SearchWork more{2 * work.most, 0};  // a place has three times the motions
-  std::optional<Way> way = LegSearch(motions, parts, held, kByContacts, more).find();
-  work.most += more.most;
-  work.done += more.done;
-  return way;
+  return LegSearch(motions, parts, held, kAlongAxes, work).find();
+}
+
+std::optional<Way> contactWay(const PairMotions& motions, std::size_t part,
+                              const std::vector<std::size_t>& held, SearchWork& work) {
+  const std::vector<std::size_t> parts{part};
+  return LegSearch(motions, parts, held, kByContacts, work).find();
 }
 
 }  // namespace vps::scenes

@@ -50,6 +50,13 @@ std::optional<Way> screwWay(const PairMotions& motions, std::size_t part,
 std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::size_t>& parts,
                           const std::vector<std::size_t>& held, SearchWork& work);
 
+/// A path of up to 5 legs for a single part that legWay() finds none for, over at most 256 places. Legs are
+/// also slides along a contact that stops a straight motion, turns about it, screws that slide along it
+/// (helical teeth), straight motions along the axes of the part as it stands, and motions as short as the
+/// part's play. An empty result is not a proof.
+std::optional<Way> contactWay(const PairMotions& motions, std::size_t part,
+                              const std::vector<std::size_t>& held, SearchWork& work);
+
 /// The placed parts of a plan, with which the paths of the plan are measured.
 struct Placing {
   const std::vector<PlacedSurface>& parts;

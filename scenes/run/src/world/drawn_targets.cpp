@@ -113,27 +113,24 @@ const std::string* otherOf(const std::string& part, const std::string& a, const 
   return contains(in_place, other) ? &other : nullptr;
 }
 
-/// Decides about a part that overlaps `blocked_by` as drawn: it stays blocked if the search for places has
-/// proven that no place without overlap exists.
+/// Decides about a part that overlaps `blocked_by` as drawn. It is blocked unless the search has found places
+/// at which no parts overlap at all. overlap_doubt tells a block that is not proven for the places near by.
 void judgeByPlaces(const CheckedPlaces& places, StepResult& step) {
-  const auto isIn = [](const CheckedGroup& group, const std::string& name) {
-    return std::ranges::find(group.parts, name) != group.parts.end();
-  };
-  bool is_free = places.verdict == Verdict::Fits;
-  std::string doubt = places.reason;
-  for (const CheckedGroup& group : places.groups) {
-    if (!isIn(group, step.part) || !isIn(group, step.blocked_by)) continue;
-    if (group.verdict == Verdict::Blocked) {
-      step.reason += "; " + group.reason;
-      return;
-    }
-    is_free = group.verdict == Verdict::Fits;
-    if (!is_free) doubt = group.reason;
+  if (places.verdict == Verdict::Fits) {
+    step.blocked_by = step.reason = "";
+    step.blocked_at_W = Vec3::Zero();
+    step.blocked_depth_m = step.blocked_error_m = 0;
+    return;
   }
-  if (!is_free) step.overlap_doubt = step.reason + "; " + doubt;
-  step.blocked_by = step.reason = "";
-  step.blocked_at_W = Vec3::Zero();
-  step.blocked_depth_m = step.blocked_error_m = 0;
+  const auto isProven = [&](const CheckedGroup& group) {
+    return group.verdict == Verdict::Blocked &&
+           std::ranges::find(group.parts, step.part) != group.parts.end();
+  };
+  const auto proven = std::ranges::find_if(places.groups, isProven);
+  if (proven != places.groups.end())
+    step.reason += "; " + proven->reason;
+  else
+    step.overlap_doubt = places.reason;
 }
 
 void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
@@ -251,17 +248,19 @@ std::string aloneDoubt(const CheckResult& checked, const StepResult& step) {
          "whether the parts are laid out side by side, or each in a frame of its own";
 }
 
-/// Moves the paths of parts that overlap others as drawn, so that they end at the places without overlap that
-/// the check has found.
+/// Moves the parts that the check has moved to clear all overlaps: each to its new place, and the rest of its
+/// path by the same displacement, without its small turn, which would be large at a distant start.
 void moveTargets(const CheckedPlaces& places, Scene& scene, std::vector<StepResult>& steps) {
+  if (places.verdict != Verdict::Fits) return;
   for (const MovedPart& moved : places.moved)
     for (std::size_t i = 0; i < steps.size(); ++i) {
       SceneStep& step = scene.steps[i];
       if (steps[i].part != moved.name) continue;
-      const Pose X = moved.X_WP * placeOf(step).inverse();
-      step.X_WP_start = X * step.X_WP_start;
-      step.X_WP_target = X * step.X_WP_target;
-      for (Pose& point : step.way_points) point = X * point;
+      Pose& place = step.takes_off ? step.X_WP_start : step.X_WP_target;
+      Pose& end = step.takes_off ? step.X_WP_target : step.X_WP_start;
+      place = moved.X_WP;
+      end.p += moved.by_W;
+      for (Pose& point : step.way_points) point.p += moved.by_W;
       steps[i].moved_m = moved.most_m;
     }
 }
@@ -286,7 +285,8 @@ std::vector<StepResult> checkDrawnTargets(Scene& scene, const Progress& progress
                                           std::shared_ptr<const CheckResult>* to) {
   CheckSettings settings;
   settings.has_play = false;
-  settings.has_places = true;
+  // Scenery takes no part in the run, so that the places which the check finds with it say nothing.
+  settings.has_places = std::ranges::none_of(scene.parts, &ScenePart::is_scenery);
   const auto kept =
       std::make_shared<const CheckResult>(checkAssembly(scene.name, drawnParts(scene), settings, progress));
   if (to != nullptr) *to = kept;
