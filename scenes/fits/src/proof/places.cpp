@@ -122,9 +122,9 @@ class PlaceSearch {
       if (clashes_.isOf(group, pair)) clashes.push_back(&pair);
     for (const NearPair* pair : clashes)
       if (std::string why = provenAlone(*pair); !why.empty()) return {Verdict::Blocked, std::move(why)};
+    if (is_quick) return {Verdict::NotShown, "places were not searched for, since other parts are blocked"};
     for (const NearPair* pair : clashes)
       if (std::string why = hiddenByFacets(*pair); !why.empty()) return {Verdict::NotShown, std::move(why)};
-    if (is_quick) return {Verdict::NotShown, "places were not searched for, since other parts are blocked"};
     Tried last;
     std::size_t most_moved = 0;
     work_ = 0;

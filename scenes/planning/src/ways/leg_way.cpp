@@ -3,6 +3,7 @@
 #include <array>
 #include <deque>
 #include <numbers>
+#include <optional>
 
 #include "surface/triangle_gap.h"
 #include "ways/way.h"
@@ -94,19 +95,18 @@ class LegSearch {
     return out;
   }
 
-  /// How far the parts move; the point that stopped them is added to `contacts` if that is not null.
+  /// How far the parts move.
+  /// @param contact  receives the point that stopped the parts; null: not wanted
   Reach reachOf(const Standing& standing, const Motion& motion, double most,
-                std::vector<Contact>* contacts = nullptr) {
+                std::optional<Contact>* contact = nullptr) {
     Reach least{most, false, false, {}};
-    const std::size_t none = parts_.size();
-    std::size_t by = none;
-    for (std::size_t i = 0; i < parts_.size(); ++i)
-      if (const Reach reach = standing.searches[i].reach(motion, least.s, &work_); reach.is_stopped) {
-        least = reach;
-        by = i;
-      }
-    if (contacts != nullptr && by != none && !least.is_given_up)
-      contacts->push_back(contactOf(standing.placed[by], standing.searches[by], motion, least));
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const Reach reach = standing.searches[i].reach(motion, least.s, &work_);
+      if (!reach.is_stopped) continue;
+      least = reach;
+      if (contact != nullptr && !reach.is_given_up)
+        *contact = contactOf(standing.placed[i], standing.searches[i], motion, reach);
+    }
     return least;
   }
 
@@ -201,9 +201,9 @@ class LegSearch {
     const bool is_last = from.legs.size() + 1 >= repertoire_.most_legs;
     for (std::size_t i = 0; i < straight.size(); ++i) {
       const Motion motion = straight[i];
-      std::vector<Contact> contacts;
-      const bool wants_contact = repertoire_.follows_contacts && parts_.size() == 1 && i < usual && !is_last;
-      const Reach reach = reachOf(standing, motion, motions_.leave_m(), wants_contact ? &contacts : nullptr);
+      std::optional<Contact> contact;
+      const bool wants_contact = repertoire_.follows_contacts && i < usual && !is_last;
+      const Reach reach = reachOf(standing, motion, motions_.leave_m(), wants_contact ? &contact : nullptr);
       if (!reach.is_stopped) {
         Way way{WayKind::Legs, from.legs, kNoDirection, 0};
         giveRoom(from, motion, way);
@@ -211,7 +211,7 @@ class LegSearch {
         return way;
       }
       if (isLeg(from, reach.s)) legs.emplace_back(motion, reach.s);
-      for (const Contact& contact : contacts) addByContact(from, motion.direction, contact, straight, turns);
+      if (contact) addByContact(from, motion.direction, *contact, straight, turns);
     }
     if (is_last) return std::nullopt;
     for (const Motion& motion : turns) {
@@ -277,10 +277,10 @@ class LegSearch {
   void addPlace(const Place& from, const Leg& leg, std::deque<Place>& waiting) {
     if (seen_.size() >= repertoire_.most_places) return;
     const Pose X_W = leg.motion.at(leg.s) * from.X_W;
-    // Places in the play of a part are told apart by a share of the play.
+    // Places within the play of a part differ by shares of the play.
     const double moved_m = (X_W * center_W_ - from.X_W * center_W_).norm();
-    const double same_m =
-        leg.motion.is_turn ? kLeastLeg * size_m_ : std::min(kLeastLeg * size_m_, 0.3 * moved_m);
+    const bool is_play = repertoire_.follows_contacts && !leg.motion.is_turn;
+    const double same_m = is_play ? std::min(kLeastLeg * size_m_, 0.3 * moved_m) : kLeastLeg * size_m_;
     const bool is_known = std::ranges::any_of(seen_, [&](const Pose& other) {
       return (other * center_W_ - X_W * center_W_).norm() < same_m &&
              rotationVector(other.R.transpose() * X_W.R).norm() < kLeastLeg;

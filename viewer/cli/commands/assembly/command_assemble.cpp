@@ -185,7 +185,7 @@ int runCad(AssembleArguments given) {
   }
   given.plan = {};
   const scenes::Verdict verdict = runPlanned(given, planned.scene_files);
-  // A part without a path was not run.
+  // A part without a path was not run, and a fault of a planned path is no proof.
   const scenes::Verdict of_plan = planned.status == kGood ? scenes::Verdict::Fits : scenes::Verdict::NotShown;
   return scenes::exitStatusOf(scenes::worse(verdict, of_plan));
 }

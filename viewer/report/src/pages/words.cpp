@@ -26,7 +26,7 @@ const char* words(scenes::Verdict verdict) {
 }
 
 std::string movedWords(const scenes::StepResult& step) {
-  return "as drawn the part overlaps another one, so it was brought to a place without overlap, " +
+  return "parts overlap here as drawn, so the part was brought to a place without overlap, " +
          html::format(1e3 * step.moved_m, "%.4f mm") + " from the drawn one";
 }
 

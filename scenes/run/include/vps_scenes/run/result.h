@@ -52,11 +52,11 @@ struct StepResult {
   /// Why a run cannot show that the part fits: the known error of the meshes exceeds its clearance, or no
   /// other part is near its target; empty: a run can show it.
   std::string mesh_doubt;
-  /// The part overlaps another one as drawn, in words, and neither places without overlap nor a proof that
-  /// there are none were found; empty: no such overlap.
+  /// Why it is not proven that the overlap with blocked_by stays wherever the parts are near their drawn
+  /// places, in words; empty if it is proven, or if there is no such overlap.
   std::string overlap_doubt;
-  /// The part overlaps others as drawn: its path and target were moved by this much [m] to a place without
-  /// overlap (CheckedPlaces); 0: not moved.
+  /// How far the part's target was moved [m] from the drawn place, so that no parts overlap: the part itself,
+  /// or a part near it, overlaps another one as drawn (CheckedPlaces); 0: not moved.
   double moved_m = 0;
   bool is_taken_off = false;  ///< the step took the part off, and its target is where it was put away
   bool completed = false;     ///< the part reached its target, whatever else is wrong
@@ -114,7 +114,7 @@ inline Evidence evidenceOf(const StepResult& step, double hand_N) {
     blocked = step.reason.empty() ? "blocked by '" + step.blocked_by + "'" : step.reason;
   return {.blocked = std::move(blocked),
           .is_in_place = step.completed,
-          .failure = step.failure_reason + (step.overlap_doubt.empty() ? "" : "; " + step.overlap_doubt),
+          .failure = step.failure_reason,
           .depth_m = step.max_penetration_m,
           .depth_limit_m = step.penetration_limit_m,
           .deepest_against = step.deepest_against,
@@ -123,7 +123,7 @@ inline Evidence evidenceOf(const StepResult& step, double hand_N) {
           .press_needed_N = step.press_needed_N,
           .hand_N = hand_N,
           .is_taken_off = step.is_taken_off,
-          .doubt = step.overlap_doubt.empty() ? step.mesh_doubt : step.overlap_doubt};
+          .doubt = step.mesh_doubt};
 }
 inline bool isWithinLimit(const StepResult& step) {
   return evidenceOf(step, 0).isWithinLimit();

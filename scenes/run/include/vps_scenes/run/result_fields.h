@@ -52,12 +52,12 @@ inline constexpr auto kStepFields = std::make_tuple(
           "an earlier part that did not reach its target and was put at its target for this step; empty if "
           "none"),
     field("overlap_doubt", &StepResult::overlap_doubt,
-          "the part overlaps another one as drawn, and neither places without overlap nor a proof that there "
-          "are none were found, in words; empty if not so"),
+          "why it is not proven that the overlap with `blocked_by` stays wherever the parts are near their "
+          "drawn places, in words; empty if it is proven or if there is no such overlap"),
     field(
         "moved_m", &StepResult::moved_m,
-        "how far the part's path and target were moved from the drawn place, where the part overlaps another "
-        "one, to a place without overlap; 0 if not moved"),
+        "how far the part's target was moved from the drawn place, so that neither the part nor a part near "
+        "it overlaps another one; 0 if not moved"),
     field("mesh_doubt", &StepResult::mesh_doubt,
           "why the run does not show that the part fits, although the hand brought the part to its target: "
           "the known error of the meshes exceeds the part's clearance, no other part is near its target, or "
