@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "support/temporary_folder.h"
+
 namespace vps::boundaries {
 
 namespace fs = std::filesystem;
@@ -29,11 +31,6 @@ std::vector<fs::path> publicHeaders() {
         headers.push_back(entry.path());
     }
   return headers;
-}
-
-std::string textOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 /// Names of the functions and classes that a header marks as exported.
@@ -94,7 +91,7 @@ TEST(Tags, HaveEveryExportedNameInItsNamespace) {
                               : path.find("/vps_scenes/") != std::string::npos ? "vps::scenes::"
                               : path.find("/vps_viewer/") != std::string::npos ? "vps::viewer::"
                                                                                : "vps::";
-    for (const std::string& name : exportedNames(textOf(header))) {
+    for (const std::string& name : exportedNames(test::bytesOf(header))) {
       ++exported;
       // The tag of a member that is exported by itself has the member's class between namespace and name.
       const bool is_found = std::ranges::any_of(

@@ -24,11 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string slurp(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 void spill(const fs::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
@@ -82,7 +77,7 @@ std::string recorded(const std::vector<LogEntry>& entries) {
   Recorder recorder(file, smallHead());
   for (const LogEntry& entry : entries) recorder.add(entry);
   recorder.finish();
-  return slurp(file);
+  return test::bytesOf(file);
 }
 
 /// Number of leading entries that equal those of `truth`.
@@ -170,11 +165,11 @@ TEST(Recorder, AnExistingFileStaysUntilFinish) {
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "run.mcap";
   { Recorder(file, smallHead()).finish(); }
-  const std::string before = slurp(file);
+  const std::string before = test::bytesOf(file);
   {
     Recorder recorder(file, smallHead());
     recorder.add(sampleAt(0));
-    EXPECT_EQ(slurp(file), before);
+    EXPECT_EQ(test::bytesOf(file), before);
     EXPECT_TRUE(fs::exists(recorder.unfinished()));
     recorder.finish();
     EXPECT_FALSE(fs::exists(recorder.unfinished()));
@@ -193,8 +188,8 @@ TEST(Recorder, RefusesToOverwriteAFileThatIsNoRecording) {
     const std::string why = whyRefused([&] { Recorder(file, smallHead()).finish(); });
     EXPECT_EQ(why.find(file.string() + ": "), 0u) << why;
   }
-  EXPECT_EQ(slurp(letter), "dear reader");
-  EXPECT_EQ(slurp(foreign), bag);
+  EXPECT_EQ(test::bytesOf(letter), "dear reader");
+  EXPECT_EQ(test::bytesOf(foreign), bag);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // no temporary file is left
   EXPECT_NE(whyRefused([&] { loadRecording(foreign); }), "");
   EXPECT_NE(whyRefused([&] { loadRecording(letter); }), "");

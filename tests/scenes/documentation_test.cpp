@@ -13,6 +13,7 @@
 #include <string>
 
 #include "scene/read_fields.h"
+#include "support/temporary_folder.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/fits/check_fields.h"
 #include "vps_scenes/planning/plan_fields.h"
@@ -169,15 +170,10 @@ const char* const kResultHead = "| key | meaning |\n|---|---|\n";
 
 // --- The documents
 
-std::string textOf(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Compares, or writes, the text between the markers "<!-- keys: name -->" and "<!-- end -->" of a document.
 void checkSection(const std::string& readme, const std::string& name, const std::string& expected) {
   const std::string file = std::string(VPS_SOURCE_DIR) + "/" + readme;
-  std::string text = textOf(file);
+  std::string text = test::bytesOf(file);
   const std::string begin = "<!-- keys: " + name + " -->\n";
   const std::size_t at = text.find(begin);
   ASSERT_NE(at, std::string::npos) << readme << " has no '" << begin << "'";

@@ -70,11 +70,6 @@ class Intruder {
   scenes::DdsTopic out_;
 };
 
-std::string slurp(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 /// A line that contains these words, and the number of such lines.
 std::string lineWith(const std::string& text, const std::string& words, int& count) {
   std::string found;
@@ -102,7 +97,7 @@ bool hostileRow(const std::string& scene) {
   nodes.startDevice();
   nodes.startRender();
   if (!nodes.join() || !nodes.waitForHold()) {
-    printRow(what, bar, "the run did not begin: " + slurp(folder.path() / "render.txt"), false);
+    printRow(what, bar, "the run did not begin: " + test::bytesOf(folder.path() / "render.txt"), false);
     return false;
   }
   test::ChildProcess second({VPS_PROGRAM, "device", "--session", name, "--network", "lo"},
@@ -142,8 +137,10 @@ bool hostileRow(const std::string& scene) {
   std::ifstream in(folder.path() / "run.json");
   const nlohmann::json run = nlohmann::json::parse(in, nullptr, false);
   int render_said = 0, device_said = 0;
-  const std::string render_words = lineWith(slurp(folder.path() / "render.txt"), "refused", render_said),
-                    device_words = lineWith(slurp(folder.path() / "device.txt"), "refused", device_said);
+  const std::string render_words =
+                        lineWith(test::bytesOf(folder.path() / "render.txt"), "refused", render_said),
+                    device_words =
+                        lineWith(test::bytesOf(folder.path() / "device.txt"), "refused", device_said);
   char words[900];
   std::snprintf(words, sizeof words,
                 "%ld messages in %.1f s; the run %s (%s); render said %d times: %s; device (exit status %d) "
@@ -152,7 +149,7 @@ bool hostileRow(const std::string& scene) {
                 sent, took_s, has_ended ? "ended" : "did not end",
                 run.is_discarded() ? "no result" : run["verdict"].get<std::string>().c_str(), render_said,
                 render_words.c_str(), device_status, device_said, device_words.c_str(), second_status,
-                slurp(folder.path() / "second.txt").c_str());
+                test::bytesOf(folder.path() / "second.txt").c_str());
   for (char& c : words)
     if (c == '\n') c = ' ';
   const bool is_good = has_ended && !run.is_discarded() && run["verdict"] == "fits" && render_said == 1 &&

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "support/analytic.h"
+#include "support/temporary_folder.h"
 #include "vps/mesh_repair.h"
 #include "vps/voxmap.h"
 #include "vps/winding_number.h"
@@ -22,14 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string bytesOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Reads three corners for each facet, in the file's unit times unit_m.
 Mesh readStl(const fs::path& file, double unit_m) {
-  const std::string bytes = bytesOf(file);
+  const std::string bytes = test::bytesOf(file);
   Mesh mesh;
   const auto add = [&](const Vec3& p) {
     mesh.vertices.push_back(unit_m * p);
@@ -57,7 +53,7 @@ Mesh readStl(const fs::path& file, double unit_m) {
 
 Mesh readObj(const fs::path& file) {
   Mesh mesh;
-  std::istringstream text(bytesOf(file));
+  std::istringstream text(test::bytesOf(file));
   for (std::string line; std::getline(text, line);) {
     std::istringstream words(line);
     std::string word;
@@ -75,7 +71,7 @@ Mesh readObj(const fs::path& file) {
 
 /// Reads VRML as KiCad writes it: pairs of "coordIndex [...]" and "point [...]", one pair for each face.
 Mesh readWrl(const fs::path& file, double unit_m) {
-  std::string text = bytesOf(file);
+  std::string text = test::bytesOf(file);
   std::replace(text.begin(), text.end(), ',', ' ');
   Mesh mesh;
   std::size_t from = 0;

@@ -2,6 +2,7 @@
 // CAD import: parts, poses and units agree with the file, and damaged files are refused. The file has more
 // than 400 lines, since it tests all file formats, with files that the tests write themselves.
 #include "vps_scenes/cad/import.h"
+#include "support/temporary_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,11 +102,6 @@ class Folder {
  private:
   fs::path path_;
 };
-
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 double volume(const ImportedPart& part) {
   return massProperties(part.mesh).volume_m3;
@@ -694,7 +690,7 @@ TEST(ImportErrors, ACoordinateThatIsNotFiniteIsRefused) {
 /// Cuts a file at many lengths. Each cut file must be refused or give usable parts, without a crash.
 void expectCutsAreCalm(const fs::path& source, const std::string& name, bool may_give_parts) {
   const Folder folder;
-  const std::string whole = contents(source);
+  const std::string whole = test::bytesOf(source);
   ASSERT_FALSE(whole.empty()) << source;
   for (const double share : {0.0005, 0.003, 0.02, 0.1, 0.31, 0.5, 0.77, 0.95, 0.999}) {
     const auto size = std::size_t(double(whole.size()) * share);
@@ -734,7 +730,7 @@ TEST(ImportErrors, CutColladaNeverCrashes) {
 /// A STEP file with a correct end whose middle is missing or scrambled.
 TEST(ImportErrors, DamagedStepNeverCrashes) {
   const Folder folder;
-  const std::string whole = contents(kBlock / "bearing_block.step");
+  const std::string whole = test::bytesOf(kBlock / "bearing_block.step");
   for (int i = 1; i < 12; ++i) {
     std::string damaged = whole;
     const std::size_t at = whole.size() * std::size_t(i) / 12;
@@ -1028,7 +1024,7 @@ TEST(ImportReal, DamagedIgesNeverCrashes) {
   const fs::path source = cadFolder() / "occt-bearing-motor" / "bearing.iges";
   SKIP_WITHOUT(source);
   const Folder folder;
-  const std::string whole = contents(source);
+  const std::string whole = test::bytesOf(source);
   ImportSettings coarse;
   coarse.deflection_m = 1e-4;
   // Open CASCADE 7.6.3 crashes (SIGSEGV) on these two of 400 seeds; other versions may behave differently.

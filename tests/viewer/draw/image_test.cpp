@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_viewer/draw/image.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -16,11 +17,6 @@ std::string scratch(const std::string& name) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "vps_image_test";
   std::filesystem::create_directories(folder);
   return (folder / name).string();
-}
-
-std::string bytesOf(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 Image pattern() {
@@ -42,12 +38,12 @@ TEST(Png, ASavedImageLoadsBackToTheBit) {
 TEST(Png, TheSameImageGivesTheSameBytes) {
   savePng(pattern(), scratch("a.png"));
   savePng(pattern(), scratch("b.png"));
-  EXPECT_EQ(bytesOf(scratch("a.png")), bytesOf(scratch("b.png")));
+  EXPECT_EQ(test::bytesOf(scratch("a.png")), test::bytesOf(scratch("b.png")));
 }
 
 TEST(Png, AFileCutAtAnyByteIsALoadErrorThatNamesIt) {
   savePng(pattern(), scratch("whole.png"));
-  const std::string whole = bytesOf(scratch("whole.png"));
+  const std::string whole = test::bytesOf(scratch("whole.png"));
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const std::string file = scratch("cut.png");
     std::ofstream(file, std::ios::binary).write(whole.data(), static_cast<std::streamsize>(size));
@@ -62,7 +58,7 @@ TEST(Png, AFileCutAtAnyByteIsALoadErrorThatNamesIt) {
 
 TEST(Png, AFlippedBitInThePixelsIsALoadError) {
   savePng(pattern(), scratch("flipped.png"));
-  std::string bytes = bytesOf(scratch("flipped.png"));
+  std::string bytes = test::bytesOf(scratch("flipped.png"));
   bytes[bytes.find("IDAT") + 20] ^= 0x10;
   std::ofstream(scratch("flipped.png"), std::ios::binary) << bytes;
   EXPECT_THROW(loadPng(scratch("flipped.png")), LoadError);
