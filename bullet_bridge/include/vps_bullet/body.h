@@ -74,7 +74,7 @@ struct Body {
   std::unique_ptr<btRigidBody> rigid;  ///< with tuneBody()'s sleeping thresholds
 
   /// Present pose of the mesh's frame.
-  [[nodiscard]] Pose X_WP() const;
+  [[nodiscard]] VPS_BULLET_API Pose X_WP() const;
 };
 
 /// Makes a body from a mesh. This library reads no files; importCad() of vps::scenes does

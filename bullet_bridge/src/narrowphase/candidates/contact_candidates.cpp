@@ -4,6 +4,7 @@
 #include <span>
 
 #include "narrowphase/candidates/contact_candidate.h"
+#include "narrowphase/candidates/same_places.h"
 #include "narrowphase/refinement/curved_contact.h"
 #include "narrowphase/refinement/surface_view.h"
 #include "native_shapes/native_shape.h"
@@ -70,7 +71,9 @@ void mergeOnRound(const SideView& side, const SideView& other, const btCollision
     double way_m;
   };
   thread_local std::vector<Moved> moved;
+  thread_local SamePlaces places;
   moved.clear();
+  places.clear(out.size() - first);
   std::size_t kept = first;
   for (std::size_t i = first; i < out.size(); ++i) {
     Candidate c = out[i];
@@ -78,16 +81,18 @@ void mergeOnRound(const SideView& side, const SideView& other, const btCollision
     if (c.distance_m > cutoff_m) continue;
     if (is_moved) {
       const double way_m = (c.p_W - out[i].p_W).norm();
-      const auto same = std::find_if(moved.begin(), moved.end(), [&](const Moved& m) {
-        return (out[m.index].p_W - c.p_W).squaredNorm() < kSamePlace_m * kSamePlace_m;
+      const std::uint32_t same = places.find(c.p_W, [&](std::uint32_t m) {
+        return (out[moved[m].index].p_W - c.p_W).squaredNorm() < kSamePlace_m * kSamePlace_m;
       });
-      if (same != moved.end()) {
-        if (way_m < same->way_m) {
-          out[same->index] = c;
-          same->way_m = way_m;
+      if (same != SamePlaces::kNone) {
+        if (way_m < moved[same].way_m) {
+          out[moved[same].index] = c;
+          moved[same].way_m = way_m;
+          places.add(c.p_W, same);
         }
         continue;
       }
+      places.add(c.p_W, static_cast<std::uint32_t>(moved.size()));
       moved.push_back({kept, way_m});
     }
     out[kept++] = c;
