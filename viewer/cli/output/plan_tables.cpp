@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "output/table.h"
@@ -81,6 +82,21 @@ std::string benchText(const scenes::PlannedAssembly& assembly) {
          listed(left) + ".\n";
 }
 
+/// A part without a path, and what is proven of it.
+std::string blockedText(const scenes::BlockedPart& blocked) {
+  if (!blocked.enclosed_by.empty())
+    return "'" + blocked.name + "' cannot be taken off '" + blocked.enclosed_by +
+           "' on any path, which is proven: between the two there is room for " +
+           fixed(1e3 * blocked.moves_m, 3) + " mm" + " and " +
+           fixed(blocked.turns_rad * 180 / std::numbers::pi, 1) +
+           " degrees at most, beyond which they overlap everywhere.\n";
+  return "'" + blocked.name +
+         "' was not taken off: no path was found, which does not prove that there is none" +
+         (blocked.by.empty() ? std::string()
+                             : "; in straight directions it is stopped by " + listed(blocked.by)) +
+         (blocked.is_searched ? "" : "; the search for paths of several legs ended at its limit") + ".\n";
+}
+
 std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   std::string out =
       assembly.name + " begins with '" + assembly.fixed.front() + "' (" + assembly.fixed_reason + ").\n";
@@ -109,12 +125,7 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   for (const scenes::PlannedStep& step : assembly.steps)
     if (!step.falling.empty())
       out += "Until '" + step.name + "' is in place, nothing carries " + listed(step.falling) + ".\n";
-  for (const scenes::BlockedPart& blocked : assembly.blocked)
-    out += "'" + blocked.name +
-           "' was not taken off: no path was found, which does not prove that there is none" +
-           (blocked.by.empty() ? std::string()
-                               : "; in straight directions it is stopped by " + listed(blocked.by)) +
-           (blocked.is_searched ? "" : "; the search for paths of several legs ended at its limit") + ".\n";
+  for (const scenes::BlockedPart& blocked : assembly.blocked) out += blockedText(blocked);
   return out;
 }
 
@@ -231,6 +242,9 @@ std::string planHeadline(const scenes::PlanResult& plan) {
   out += blocked == 0
              ? std::string(", all parts planned")
              : ", " + std::to_string(blocked) + (blocked == 1 ? " part" : " parts") + " without a path";
+  if (const std::size_t proven = plan.enclosed(); proven > 0)
+    out +=
+        ", " + (proven == blocked ? "proven" : std::to_string(proven) + " of them proven") + " to have none";
   return out + " in " + fixed(plan.check_wall_s + plan.plan_wall_s, 1) + " s";
 }
 

@@ -231,7 +231,7 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   const bool is_free = std::ranges::all_of(
       faults, [](const scenes::WayFault& fault) { return fault.kind == scenes::WayFaultKind::Support; });
   // That no path was found is no proof that there is none.
-  const int status = !is_free ? kBad : plan.blocked() > 0 ? kNotShown : kGood;
+  const int status = !is_free || plan.enclosed() > 0 ? kBad : plan.blocked() > 0 ? kNotShown : kGood;
   PlannedFolder folder{status, plan.steps(), {}};
   for (std::size_t i = 0; i < plan.assemblies.size(); ++i)
     folder.scene_files.push_back({(std::filesystem::path(given.out) / sceneFileName(plan, i)).string(),

@@ -55,8 +55,7 @@ double mayMove_m(const PlacedSurface& part);
 /// turn of the direction back to the shaft's axis. This point is no farther from the shaft's axis than the
 /// bore's radius. The point is therefore inside the shaft, if the shaft is round all around and has no hole
 /// near its face over the length by which the slice may move along the axis. A tilt of the slice only brings
-/// its points nearer to the axis. The converse does not hold: a disc that is larger than a bore can stand in
-/// it at a slant.
+/// its points nearer to the axis. A shaft that is shorter than the slice may move is left to coverPoses().
 bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fit);
 
 }  // namespace vps::scenes

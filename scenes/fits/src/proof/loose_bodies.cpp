@@ -32,11 +32,6 @@ class Sets {
   std::vector<std::size_t> up_;
 };
 
-Vec3 corner(const Box& box, int i) {
-  return {(i & 1) != 0 ? box.max.x() : box.min.x(), (i & 2) != 0 ? box.max.y() : box.min.y(),
-          (i & 4) != 0 ? box.max.z() : box.min.z()};
-}
-
 }  // namespace
 
 double MovableBody::mostMoved_m(const Eigen::Matrix<double, 6, 1>& motion) const {
@@ -47,7 +42,7 @@ double MovableBody::mostMoved_m(const Eigen::Matrix<double, 6, 1>& motion, const
   const Pose X = movedPose(Pose(), loose, motion);
   double most_m = 0;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 p_W = corner(of_W, i);
+    const Vec3 p_W = cornerOf(of_W, i);
     most_m = std::max(most_m, (X * p_W - p_W).norm());
   }
   return most_m;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include <tbb/parallel_for.h>
 
@@ -14,6 +15,7 @@
 #include "pair/touches.h"
 #include "proof/blocked_proof.h"
 #include "proof/clash_groups.h"
+#include "proof/pose_cover.h"
 #include "text/words.h"
 #include "vps/mesh_overlap.h"
 
@@ -30,6 +32,9 @@ static_assert(kClear_m + kOverlapCertain_m < kContactDepth_m);
 /// Limit of the work for one group of clashing parts, in the unit of Overlap::work: half a minute of one
 /// core.
 constexpr std::size_t kMostPlaceWork = 30'000'000;
+
+/// Limit of the work for the proof that one pair overlaps at all its poses, in the unit of PoseCover::work.
+constexpr std::size_t kMostCoverWork = 10'000'000;
 
 constexpr std::size_t kMostNamed = 4;  // parts that are named in a message
 
@@ -142,6 +147,8 @@ class PlaceSearch {
       most_moved = std::max(most_moved, parts_moved);
       last = std::move(tried);
     }
+    for (const NearPair* pair : clashes)
+      if (std::string why = provenByCover(*pair); !why.empty()) return {Verdict::Blocked, std::move(why)};
     return {Verdict::NotShown, notShownWords(group, most_moved, last)};
   }
 
@@ -225,6 +232,36 @@ class PlaceSearch {
       if (const double least_m = provenAfter(tried, e); least_m > 0) return provenWords(tried, least_m);
     }
     return {};
+  }
+
+  /// The proof, in words, that a pair overlaps at all relative poses that its parts may have within
+  /// kSightTolerance_m of the drawn places; empty if nothing is proven. Nothing is proven for parts that are
+  /// pressed into others, since they may be drawn at a wrong place in them.
+  [[nodiscard]] std::string provenByCover(const NearPair& pair) const {
+    const PlacedSurface *a = &parts_[pair.a], *b = &parts_[pair.b];
+    PoseSet set;
+    double turn_rad = 0;
+    for (const std::size_t part : {pair.a, pair.b}) {
+      const MovableBody& body = by_sight_[body_of_[part]];
+      if (body.is_fixed) continue;
+      if (body.parts.size() > 1) return {};
+      set.most_m += kSightTolerance_m;
+      turn_rad += body.mostTurn(kSightTolerance_m);
+    }
+    if (!(set.most_m > 0) || !std::isfinite(pair.error_m)) return {};
+    // Between points of both boxes, no two move farther apart than the corners of both boxes together.
+    set.box_W.min = a->box_W.min.cwiseMax(b->box_W.min);
+    set.box_W.max = a->box_W.max.cwiseMin(b->box_W.max);
+    if (set.box_W.isEmpty()) return {};
+    set.at_W = set.box_W.center();
+    set.half << Vec3::Constant(set.most_m), Vec3::Constant(turn_rad);
+    if (b->surface->mesh().triangles.size() < a->surface->mesh().triangles.size()) std::swap(a, b);
+    const Obstacle obstacle{b->surface.get(), b->X_WP,
+                            std::max(pair.error_m + kContactDepth_m, pair.allowed_m)};
+    if (!coverPoses(*a->surface, a->X_WP, std::span(&obstacle, 1), set, kMostCoverWork).is_proven) return {};
+    return "wherever " + quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) +
+           " are within " + lengthInWords(kSightTolerance_m) +
+           " of where they are drawn, they overlap by more than the error of their " + "meshes";
   }
 
   /// The result of provenOverlap_m() after the least motion of the touches for the cost e.

@@ -33,6 +33,12 @@ struct PlacedSurface {
 std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress,
                                           std::span<const PlacedSurface> prepared = {});
 
+/// Corner i of a box, 0 to 7: the bits of i choose the greater x, y and z.
+inline Vec3 cornerOf(const Box& box, int i) {
+  return {(i & 1) != 0 ? box.max.x() : box.min.x(), (i & 2) != 0 ? box.max.y() : box.min.y(),
+          (i & 4) != 0 ? box.max.z() : box.min.z()};
+}
+
 /// The part with this name, which must exist.
 const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::string& name);
 

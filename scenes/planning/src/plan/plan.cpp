@@ -11,6 +11,7 @@
 
 #include "check/check_placed.h"
 #include "core/machine.h"
+#include "order/proven_enclosed.h"
 #include "order/take_apart.h"
 #include "overlaps/drawn_overlaps.h"
 #include "surface/placed_surface.h"
@@ -45,6 +46,13 @@ std::size_t PlanResult::blocked() const {
   return std::accumulate(
       assemblies.begin(), assemblies.end(), std::size_t{0},
       [](std::size_t sum, const PlannedAssembly& one) { return sum + one.blocked.size(); });
+}
+
+std::size_t PlanResult::enclosed() const {
+  std::size_t count = 0;
+  for (const PlannedAssembly& assembly : assemblies)
+    for (const BlockedPart& part : assembly.blocked) count += part.enclosed_by.empty() ? 0 : 1;
+  return count;
 }
 
 namespace {
@@ -102,7 +110,9 @@ class Planner {
     for (const std::size_t part : apart.fixed) planned.fixed.push_back(nameOf(part));
     for (const Disassembly::Blocked& blocked : apart.blocked) {
       planned.fixed.push_back(nameOf(blocked.part));
-      planned.blocked.push_back({nameOf(blocked.part), {}, blocked.is_searched});
+      planned.blocked.emplace_back();
+      planned.blocked.back().name = nameOf(blocked.part);
+      planned.blocked.back().is_searched = blocked.is_searched;
       for (const std::size_t by : blocked.by) planned.blocked.back().by.push_back(nameOf(by));
     }
     std::vector<std::string> names;
@@ -310,6 +320,7 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
     if (settings.has_bench) layOnBench(placing, assembly);
     measureWays(placing, assembly, progress);
   }
+  proveEnclosed(placed, result.assemblies, progress);
   result.cut_motions = motions.cutMotions();
   result.contacts = contactsOf(motions, checked, progress);
   result.equal = equalParts(placed);

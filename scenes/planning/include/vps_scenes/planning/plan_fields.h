@@ -49,11 +49,19 @@ inline constexpr auto kPlannedOrderFields = std::make_tuple(
         "`way`: no path is left for `before` once `after` is in place; `carries`: `before` carries `after`"));
 static_assert(coversAllMembers<PlannedOrder>(kPlannedOrderFields));
 
-inline constexpr auto kBlockedPartFields =
-    std::make_tuple(field("name", &BlockedPart::name, "a part that was not taken off"),
-                    field("by", &BlockedPart::by, "parts that stop `name` in the directions that were tried"),
-                    field("is_searched", &BlockedPart::is_searched,
-                          "false: the search for paths of several legs ended at its work limit"));
+inline constexpr auto kBlockedPartFields = std::make_tuple(
+    field("name", &BlockedPart::name, "a part that was not taken off"),
+    field("by", &BlockedPart::by, "parts that stop `name` in the directions that were tried"),
+    field("is_searched", &BlockedPart::is_searched,
+          "false: the search for paths of several legs ended at its work limit"),
+    field("enclosed_by", &BlockedPart::enclosed_by,
+          "a part that `name` is proven to be unable to leave on any path; empty: nothing is proven, "
+          "and a path that the search did not find may exist"),
+    field("moves_m", &BlockedPart::moves_m,
+          "with `enclosed_by`: upper bound of how far the middle of the moved part can move"),
+    field("turns_rad", &BlockedPart::turns_rad,
+          "with `enclosed_by`: upper bound of how far the part can turn about each axis, but about "
+          "that of a round part"));
 static_assert(coversAllMembers<BlockedPart>(kBlockedPartFields));
 
 inline constexpr auto kPlannedAssemblyFields =
@@ -111,20 +119,21 @@ inline constexpr auto kEqualPartsFields =
     std::make_tuple(field("names", &EqualParts::names, "parts of equal geometry"));
 static_assert(coversAllMembers<EqualParts>(kEqualPartsFields));
 
-inline constexpr auto kPlanFields =
-    std::make_tuple(field("assembly", &PlanResult::assembly, "name of the planned assembly"),
-                    list("fasteners", &PlanResult::fasteners, kFastenerFields),
-                    list("choices", &PlanResult::choices, kOverlapChoiceFields),
-                    field("blocked_count", &PlanResult::blocked, "number of parts that were not taken off"),
-                    list("assemblies", &PlanResult::assemblies, kPlannedAssemblyFields),
-                    list("contacts", &PlanResult::contacts, kPlannedContactFields),
-                    list("equal", &PlanResult::equal, kEqualPartsFields),
-                    list("overlaps", &PlanResult::overlaps, kCheckedPairFields),
-                    list("twice", &PlanResult::twice, kDrawnTwiceFields),
-                    list("uncertain", &PlanResult::uncertain, kCheckedPairFields),
-                    field("cut_motions", &PlanResult::cut_motions,
-                          "number of straight motions that count as stopped because they were too long to "
-                          "follow to their end"));
+inline constexpr auto kPlanFields = std::make_tuple(
+    field("assembly", &PlanResult::assembly, "name of the planned assembly"),
+    list("fasteners", &PlanResult::fasteners, kFastenerFields),
+    list("choices", &PlanResult::choices, kOverlapChoiceFields),
+    field("blocked_count", &PlanResult::blocked, "number of parts that were not taken off"),
+    field("enclosed_count", &PlanResult::enclosed, "number of these parts that are proven to have no path"),
+    list("assemblies", &PlanResult::assemblies, kPlannedAssemblyFields),
+    list("contacts", &PlanResult::contacts, kPlannedContactFields),
+    list("equal", &PlanResult::equal, kEqualPartsFields),
+    list("overlaps", &PlanResult::overlaps, kCheckedPairFields),
+    list("twice", &PlanResult::twice, kDrawnTwiceFields),
+    list("uncertain", &PlanResult::uncertain, kCheckedPairFields),
+    field("cut_motions", &PlanResult::cut_motions,
+          "number of straight motions that count as stopped because they were too long to "
+          "follow to their end"));
 inline constexpr auto kPlanWallFields =
     std::make_tuple(field("check_s", &PlanResult::check_wall_s, "time to check the parts as drawn"),
                     field("plan_s", &PlanResult::plan_wall_s, "time to plan the disassembly"));

@@ -82,6 +82,10 @@ struct BlockedPart {
   std::string name;
   std::vector<std::string> by;
   bool is_searched = true;  ///< false: the search for paths of several legs ended at its work limit
+  /// A part that `name` is proven to be unable to leave, on any path, whatever other parts do; empty: nothing
+  /// is proven. A part without a path and without a proof may still have a path that the search did not find.
+  std::string enclosed_by;
+  double moves_m = 0, turns_rad = 0;  ///< bounds of what `name` can move and turn relative to enclosed_by
 };
 
 /// The assembly, or a subassembly, which is assembled separately beforehand.
@@ -165,6 +169,8 @@ struct PlanResult {
   double check_wall_s = 0, plan_wall_s = 0;
   [[nodiscard]] std::size_t steps() const;
   [[nodiscard]] std::size_t blocked() const;
+  /// Number of parts among them that are proven to have no path.
+  [[nodiscard]] std::size_t enclosed() const;
 };
 
 enum class WayFaultKind {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "order/proven_enclosed.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "proof/enclosure.h"
+
+namespace vps::scenes {
+
+namespace {
+
+// Limits of the work, in the unit of Enclosure::work, of which two or three million take a second.
+constexpr std::size_t kMostWorkOfPair = 20'000'000, kMostWork = 150'000'000;
+
+struct Question {
+  BlockedPart* part;
+  const std::string* by;
+  Enclosure answer;
+};
+
+}  // namespace
+
+void proveEnclosed(const std::vector<PlacedSurface>& parts, std::vector<PlannedAssembly>& assemblies,
+                   const Progress& progress) {
+  std::vector<Question> questions;
+  for (PlannedAssembly& assembly : assemblies)
+    for (BlockedPart& part : assembly.blocked)
+      for (const std::string& by : part.by) questions.push_back({&part, &by, {}});
+  if (questions.empty()) return;
+  // Each question has its share of the work beforehand, so that the answers do not depend on the order.
+  const std::size_t each = std::min(kMostWorkOfPair, kMostWork / questions.size());
+  forEachOnCores(questions.size(), progress, "proving that parts cannot be taken off", [&](std::size_t i) {
+    questions[i].answer =
+        enclosureOfPair(named(parts, questions[i].part->name), named(parts, *questions[i].by), each);
+  });
+  for (const Question& question : questions) {
+    if (!question.answer.is_proven || !question.part->enclosed_by.empty()) continue;
+    const SixNumbers most = question.answer.high.cwiseMax(-question.answer.low);
+    question.part->enclosed_by = *question.by;
+    question.part->moves_m = most.head<3>().norm();
+    question.part->turns_rad = most.tail<3>().maxCoeff();
+  }
+}
+
+}  // namespace vps::scenes
