@@ -95,8 +95,11 @@ TEST_F(CheckRules, AMovedPartIsCheckedWhereItIsAndSaysSo) {
   EXPECT_NE(ran.out.find("'post' was turned by 90.0000 degrees about +z"), std::string::npos) << ran.out;
   EXPECT_NE(slurp(folder_ / "c.html").find("was moved by -0.1000 mm"), std::string::npos);
   EXPECT_EQ(result()["moves"].size(), 2U);
-  for (const nlohmann::json& pair : result()["pairs"])
-    if (pair["b"] == "pin") EXPECT_NEAR(pair["clearance_m"], 0.2e-3, 1e-8);
+  const nlohmann::json found = result();  // outlives the loop
+  for (const nlohmann::json& pair : found["pairs"])
+    if (pair["b"] == "pin") {
+      EXPECT_NEAR(pair["clearance_m"], 0.2e-3, 1e-8);
+    }
 }
 
 TEST_F(CheckRules, AMistakeInAWishIsRefused) {
