@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The key tables of scenes/scene/SCENE_FILE.md and viewer/cli/JSON.md are made from the field tables. The
-// command that writes them again after a change:
+// The key tables of scenes/scene/SCENE_FILE.md, scenes/fits/RULES.md and viewer/cli/JSON.md are made from the
+// field tables. The command that writes them again after a change:
 //   VPS_WRITE_DOCUMENTATION=1 build/release/tests/test_scenes --gtest_filter=Documentation.*
 #include <gtest/gtest.h>
 
@@ -16,6 +16,7 @@
 #include "support/temporary_folder.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/fits/check_fields.h"
+#include "vps_scenes/fits/rule_keys.h"
 #include "vps_scenes/planning/plan_fields.h"
 #include "vps_scenes/planning/study_fields.h"
 #include "vps_scenes/planning/trade_fields.h"
@@ -205,6 +206,10 @@ TEST(Documentation, TheSceneFilesKeysAreThoseOfTheFieldTables) {
                    settingLines<FidelityWish>(kFidelityWishFields) + settingLines<Fidelity>(kFidelityFields));
 }
 
+TEST(Documentation, TheKeysOfARuleAreThoseOfTheFieldTable) {
+  checkSection("scenes/fits/RULES.md", "rule", kSettingHead + settingLines<CheckRule>(kRuleKeys));
+}
+
 TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
   const std::string readme = "viewer/cli/JSON.md", head = kResultHead;
   checkSection(readme, "assemble",
@@ -215,7 +220,9 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
   checkSection(
       readme, "check",
       head + resultLines("pairs[].", kCheckedPairFields) + resultLines("fits[].", kCheckedFitFields) +
-          resultLines("parts[].", kCheckedPartFields) + resultLines("places.", kCheckedPlacesFields) +
+          resultLines("parts[].", kCheckedPartFields) + resultLines("left_out[].", kLeftOutPairFields) +
+          resultLines("moves[].", kPartMoveFields) + resultLines("rules[].", kRuleOutcomeFields) +
+          resultLines("rule_counts[].", kRuleCountFields) + resultLines("places.", kCheckedPlacesFields) +
           resultLines("places.moved[].", kMovedPartFields) +
           resultLines("places.groups[].", kCheckedGroupFields) + resultLines("wall.", kCheckWallFields));
   checkSection(readme, "plan",

@@ -7,6 +7,7 @@
 
 #include "output/table.h"
 #include "vps_scenes/fits/check_fields.h"
+#include "vps_viewer/report/asked_words.h"
 #include "vps_viewer/report/columns.h"
 #include "vps_viewer/report/csv.h"
 #include "vps_viewer/report/words.h"
@@ -76,7 +77,7 @@ std::string partTable(const scenes::CheckResult& result) {
   Table table({"<part", "x [um]", "y [um]", "z [um]", "about x [mrad]", "about y", "about z", "<ways out"});
   for (const scenes::CheckedPart& part : result.parts) {
     if (!part.play) {
-      table.add({part.name, "overlaps"});
+      table.add({part.name, noPlayWords(part, result)});
       continue;
     }
     std::vector<std::string> cells = {part.name};
@@ -112,6 +113,9 @@ std::string undrawnPressFits(const scenes::CheckResult& result) {
 
 std::string checkTables(const scenes::CheckResult& result) {
   std::string out;
+  if (!result.rules.empty()) out += fieldTable(result.rules, scenes::kRuleOutcomeFields);
+  for (const std::string& note : ruleNotes(result)) out += note + "\n";
+  if (!out.empty()) out += "\n";
   if (!result.pairs.empty()) out += pairTable(result) + "\n";
   if (!result.fits.empty()) out += fieldTable(result.fits, scenes::kCheckedFitFields) + "\n";
   const bool is_pressed =
@@ -125,16 +129,26 @@ std::string checkTables(const scenes::CheckResult& result) {
 }
 
 std::string checkHeadline(const scenes::CheckResult& result) {
+  const bool is_chosen = result.isAboutChosenPairs();
   std::string out = result.assembly + ": " + std::to_string(result.parts.size()) + " parts, " +
-                    std::to_string(result.pairs.size()) + " pairs near each other, ";
+                    std::to_string(result.pairs.size()) + (is_chosen ? " chosen" : "") +
+                    " pairs near each other, ";
   const std::string answer = assemblyWords(result);
+  std::string about;
+  for (const std::string& words : {chosenWords(result), moveWords(result), ruleWords(result)})
+    if (!words.empty()) about += "\n" + words;
   const std::size_t clashes = result.clashes();
-  if (clashes == 0) return out + (answer.empty() ? "no clash deeper than the error of the check" : answer);
+  if (clashes == 0)
+    return out +
+           (answer.empty() ? std::string("no clash deeper than the error of the check") +
+                                 (is_chosen ? " among the chosen pairs" : "")
+                           : answer) +
+           about;
   const scenes::CheckedPair& worst = *result.deepestClash();
   out += std::to_string(clashes) + (clashes == 1 ? " clash: " : " clashes, the deepest: ") + worst.a +
          " and " + worst.b + " by " + um(worst.interference_depth_m) + " um (+- " + um(worst.error_m) +
          ") as drawn";
-  return out + "\n" + answer;
+  return out + "\n" + answer + about;
 }
 
 std::string checkCsv(const scenes::CheckResult& result) {
@@ -151,6 +165,8 @@ std::string checkCsv(const scenes::CheckResult& result) {
     add(toText(fit.kind), fit.shaft, fit.bore, fit, scenes::kCheckedFitFields);
   for (const scenes::CheckedPart& part : result.parts)
     add("part", part.name, "", part, scenes::kCheckedPartFields);
+  for (const scenes::RuleOutcome& outcome : result.rules)
+    add("rule " + outcome.rule, outcome.a, outcome.b, outcome, scenes::kRuleOutcomeFields);
   return out;
 }
 

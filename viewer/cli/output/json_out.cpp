@@ -350,12 +350,28 @@ std::string toJson(const scenes::CheckResult& result) {
   places["groups"] = Json::array();
   for (const scenes::CheckedGroup& group : result.places.groups)
     places["groups"].push_back(toObject(group, scenes::kCheckedGroupFields));
+  const auto names = [](const std::vector<scenes::PairPattern>& patterns) {
+    Json out = Json::array();
+    for (const scenes::PairPattern& pattern : patterns) out.push_back({pattern.a, pattern.b});
+    return out;
+  };
+  const auto objects = [](const auto& list, const auto& rows) {
+    Json out = Json::array();
+    for (const auto& of : list) out.push_back(toObject(of, rows));
+    return out;
+  };
   return text({{"wall", toObject(result, scenes::kCheckWallFields)},
                {"assembly", result.assembly},
                {"verdict", scenes::toText(result.verdict())},
                {"clashes", result.clashes()},
                {"uncertain", result.uncertain()},
                {"alone", result.alone},
+               {"between", names(result.between)},
+               {"ignore", names(result.ignored)},
+               {"left_out", objects(result.left_out, scenes::kLeftOutPairFields)},
+               {"moves", objects(result.moves, scenes::kPartMoveFields)},
+               {"rules", objects(result.rules, scenes::kRuleOutcomeFields)},
+               {"rule_counts", objects(result.rule_counts, scenes::kRuleCountFields)},
                {"places", places},
                {"pairs", pairs},
                {"fits", fits},

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lengths, units and axes from text.
+// Lengths, angles, units and axes from text.
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
@@ -31,6 +32,22 @@ double lengthFromText(const std::string& text, const std::string& what) {
   if (!unit_m && unit.empty()) throw LoadError(what, "", "'" + text + "' has no unit; " + remedy);
   if (!unit_m) throw LoadError(what, "", "'" + text + "' has the unknown unit '" + unit + "'; " + remedy);
   return value * *unit_m;
+}
+
+double angleFromText(const std::string& text, const std::string& what) {
+  const std::string remedy = "write an angle with its unit, like 2deg or 0.01rad";
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || !std::isfinite(value))
+    throw LoadError(what, "", "'" + text + "' is not an angle; " + remedy);
+  std::string unit(rest, end);
+  unit.erase(0, unit.find_first_not_of(' '));
+  if (unit == "rad") return value;
+  if (unit == "deg") return value * std::numbers::pi / 180;
+  throw LoadError(
+      what, "",
+      "'" + text + (unit.empty() ? "' has no unit; " : "' has the unknown unit '" + unit + "'; ") + remedy);
 }
 
 std::optional<Vec3> axisFromText(const std::string& text) {

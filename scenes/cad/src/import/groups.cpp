@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "import/part_names.h"
 #include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 
@@ -17,16 +18,6 @@ namespace vps::scenes {
 namespace {
 
 using Members = std::vector<std::size_t>;
-
-/// Whether a name matches a pattern, in which * stands for any text.
-bool matches(std::string_view name, std::string_view pattern) {
-  if (pattern.empty()) return name.empty();
-  if (pattern.front() != '*')
-    return !name.empty() && name.front() == pattern.front() && matches(name.substr(1), pattern.substr(1));
-  for (std::size_t i = 0; i <= name.size(); ++i)
-    if (matches(name.substr(i), pattern.substr(1))) return true;
-  return false;
-}
 
 /// Disjoint sets of the numbers 0 to count - 1 (union-find).
 class Unions {
@@ -118,7 +109,7 @@ class Grouping {
       if (std::ranges::find(cad_.parts[i].within, name) != cad_.parts[i].within.end()) members.push_back(i);
     if (members.empty())
       for (std::size_t i = 0; i < cad_.parts.size(); ++i)
-        if (matches(cad_.parts[i].name, name)) members.push_back(i);
+        if (import::matchesPattern(cad_.parts[i].name, name)) members.push_back(i);
     if (members.size() < 2)
       throw LoadError(cad_.file, "",
                       "--group '" + name + "' names " + (members.empty() ? "no part" : "one part") +

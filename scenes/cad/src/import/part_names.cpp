@@ -130,4 +130,24 @@ std::string bestName(const std::string& instance, const std::string& product) {
   return is_counted ? product : instance;
 }
 
+bool matchesPattern(std::string_view name, std::string_view pattern) {
+  // After a mismatch, the last * takes one more letter; earlier ones never need to take more.
+  std::size_t n = 0, p = 0, star = std::string_view::npos, after_star = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      after_star = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++p;
+      ++n;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++after_star;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
 }  // namespace vps::scenes::import

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Chooses the most meaningful name of a part, and keeps names unique.
+// Chooses the most meaningful name of a part, keeps names unique, and matches names with patterns.
 #pragma once
 
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 namespace vps::scenes::import {
 
@@ -14,6 +15,10 @@ namespace vps::scenes::import {
 /// characters are only taken if there is no other name. An instance that only numbers its product ("bolt:3",
 /// "bolt<3>") gets the product's name. Empty if neither name is meaningful.
 std::string bestName(const std::string& instance, const std::string& product);
+
+/// Whether a name matches a pattern, in which * stands for any text. O(length of the name x length of the
+/// pattern).
+bool matchesPattern(std::string_view name, std::string_view pattern);
 
 /// Gives out each name once.
 class UniqueNames {

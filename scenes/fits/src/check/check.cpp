@@ -13,8 +13,10 @@
 #include "fits/press_fit.h"
 #include "pair/pair_measures.h"
 #include "proof/places.h"
+#include "rules/asked_pairs.h"
 #include "surface/placed_surface.h"
 #include "vps/mesh_repair.h"
+#include "vps_scenes/fits/rules.h"
 
 namespace vps::scenes {
 
@@ -80,6 +82,10 @@ std::size_t CheckResult::uncertain() const {
   return static_cast<std::size_t>(std::ranges::count(pairs, true, &CheckedPair::is_uncertain));
 }
 
+bool CheckResult::isAllIgnored() const {
+  return pairs.empty() && std::ranges::find(left_out, true, &LeftOutPair::is_ignored) != left_out.end();
+}
+
 bool CheckSettings::isAsked(const std::string& part) const {
   return only_parts.empty() || std::ranges::find(only_parts, part) != only_parts.end();
 }
@@ -92,26 +98,19 @@ const CheckedPair* CheckResult::deepestClash() const {
 
 Verdict CheckResult::verdict() const {
   if (places.verdict != Verdict::Fits) return places.verdict;
-  return uncertain() > 0 || !alone.empty() ? Verdict::NotShown : Verdict::Fits;
+  return uncertain() > 0 || !alone.empty() || isAllIgnored() ? Verdict::NotShown : Verdict::Fits;
 }
 
 namespace {
 
 using PartPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-PartPairs pairsAsked(const std::vector<PlacedSurface>& parts, const CheckSettings& settings) {
-  PartPairs near = nearPairs(parts, settings.near_m);
-  std::erase_if(near, [&](const auto& pair) {
-    return !settings.isAsked(parts[pair.first].name) && !settings.isAsked(parts[pair.second].name);
-  });
-  return near;
-}
-
-std::vector<CheckedPair> checkPairs(const std::vector<PlacedSurface>& parts, const PartPairs& near,
-                                    double near_m, const Progress& progress) {
+std::vector<CheckedPair> checkPairs(const std::vector<PlacedSurface>& parts, const AskedPairs& asked,
+                                    const Progress& progress) {
+  const PartPairs& near = asked.pairs;
   std::vector<std::optional<CheckedPair>> found(near.size());
   forEachOnCores(near.size(), progress, "measuring pairs", [&](std::size_t i) {
-    found[i] = checkPair(parts[near[i].first], parts[near[i].second], near_m);
+    found[i] = checkPair(parts[near[i].first], parts[near[i].second], asked.near_m[i]);
   });
   std::vector<CheckedPair> pairs;
   for (std::optional<CheckedPair>& pair : found)
@@ -171,12 +170,13 @@ std::vector<std::string> partsAlone(const std::vector<PlacedSurface>& parts, con
   // assumed: a part of an assembly has a neighbour nearer than this, the default of --near
   constexpr double kNeighbour_m = 1e-3;
   std::vector<std::string> alone;
-  if (parts.size() < 2) return alone;
+  // A designer who chooses pairs asks about these pairs, whether they are near each other or not.
+  if (parts.size() < 2 || !settings.between.empty()) return alone;
   std::vector<bool> has_neighbour(parts.size());
   for (const auto& [a, b] : nearPairs(parts, std::max(settings.near_m, kNeighbour_m)))
     has_neighbour[a] = has_neighbour[b] = true;
-  const bool is_none_near =
-      result.pairs.empty() && settings.only_parts.empty() && settings.near_m >= kNeighbour_m;
+  const bool is_none_near = result.pairs.empty() && result.left_out.empty() && settings.only_parts.empty() &&
+                            settings.near_m >= kNeighbour_m;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if ((is_none_near || !has_neighbour[i]) && settings.isAsked(parts[i].name))
       alone.push_back(parts[i].name);
@@ -192,6 +192,7 @@ CheckedPart describePart(const PlacedSurface& part) {
     out.chord_error_m = std::max(out.chord_error_m, part.surface->chord_m(i));
   const MeshReport& report = part.surface->solid().report();
   out.no_inside = part.surface->noInside();
+  out.within = part.drawn->within;
   if (!report.isClosed() || part.surface->solid().isByWinding()) out.mesh_faults = describe(report);
   return out;
 }
@@ -213,16 +214,22 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   CheckResult result;
   result.assembly = name;
   result.near_m = settings.near_m;
+  result.between = settings.between;
+  result.ignored = settings.ignored;
+  for (const PlacedSurface& part : placed)
+    result.moves.insert(result.moves.end(), part.drawn->moves.begin(), part.drawn->moves.end());
   double begun_s = wallSeconds();
   const auto lap_s = [&] {
     const double before_s = begun_s;
     begun_s = wallSeconds();
     return begun_s - before_s;
   };
-  const PartPairs near = pairsAsked(placed, settings);
-  result.pairs = checkPairs(placed, near, settings.near_m, progress);
+  AskedPairs asked = askedPairs(placed, settings);
+  result.left_out = std::move(asked.left_out);
+  result.pairs = checkPairs(placed, asked, progress);
   result.pairs_wall_s = lap_s();
-  result.fits = checkFits(placed, settings.has_fits ? near : pairsToJudge(placed, result.pairs), progress);
+  result.fits =
+      checkFits(placed, settings.has_fits ? asked.pairs : pairsToJudge(placed, result.pairs), progress);
   removeFalseFits(result);
   judgeByFits(placed, result);
   sortPairs(result.pairs);
@@ -238,6 +245,7 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   result.pictures_wall_s = lap_s();
   for (const PlacedSurface& part : placed) result.parts.push_back(describePart(part));
   result.alone = partsAlone(placed, result, settings);
+  judgeRules(settings.rules, result);
   if (settings.has_play) checkPlay(placed, result, settings, progress);
   result.play_wall_s = lap_s();
   return result;
@@ -250,7 +258,8 @@ std::vector<DrawnPart> drawnParts(const ImportedCad& cad) {
                      .mesh = part.mesh,
                      .X_WP = part.X_WP,
                      .chord_m = part.deflection_m,
-                     .rounding_m = part.rounding_m});
+                     .rounding_m = part.rounding_m,
+                     .within = part.within});
   return parts;
 }
 
@@ -259,7 +268,7 @@ std::vector<DrawnPart> drawnParts(const Scene& scene) {
   for (const ScenePart& part : scene.parts)
     parts.push_back({part.part.name, part.part.mesh, part.X_WP, part.deflection_m, part.allow_overlap,
                      part.press_fit_m, part.youngs_modulus_Pa, part.poissons_ratio,
-                     part.part.material.friction, part.rounding_m, part.is_fixed});
+                     part.part.material.friction, part.rounding_m, part.is_fixed, part.within});
   for (const SceneStep& step : scene.steps) parts[step.part].X_WP = placeOf(step);
   return parts;
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <tbb/parallel_for.h>
 
@@ -121,8 +122,11 @@ void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, con
   for (const PlacedSurface& part : parts) standing.push_back(&part);
   const auto all = std::make_shared<const StandingParts>(std::move(standing));
   const double leave_m = 2 * all->boxes.nodes().front().box.size().norm();
+  // The part may overlap the other part of a pair that is left out, so that its free motion is not known.
+  std::unordered_set<std::string_view> left_out;
+  for (const LeftOutPair& pair : result.left_out) left_out.insert({pair.a, pair.b});
   forEachOnCores(parts.size(), progress, "measuring play", [&](std::size_t i) {
-    if (!settings.isAsked(parts[i].name)) return;
+    if (!settings.isAsked(parts[i].name) || left_out.contains(parts[i].name)) return;
     const PartTask task = taskOf(parts, i, neighbours, all);
     if (task.search) measurePlay(parts[i], task, leave_m, result.parts[i]);
   });

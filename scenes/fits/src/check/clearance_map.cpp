@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 
+#include "rules/asked_pairs.h"
 #include "surface/placed_surface.h"
 
 namespace vps::scenes {
@@ -107,7 +108,9 @@ std::vector<ClearanceMap> clearanceMaps(const std::vector<PlacedSurface>& parts,
           static_cast<std::size_t>(std::ranges::find(parts, name, &PlacedSurface::name) - parts.begin());
       if (wanted.size() < kMostParts && std::ranges::find(wanted, i) == wanted.end()) wanted.push_back(i);
     }
-  const auto near = nearPairs(parts, near_m);
+  const PairChoice choice = choiceOf(parts, result);
+  auto near = nearPairs(parts, near_m);
+  std::erase_if(near, [&](const auto& pair) { return !choice.has(pair.first, pair.second); });
   std::vector<ClearanceMap> maps(wanted.size());
   forEachOnCores(wanted.size(), progress, "mapping the clearance", [&](std::size_t k) {
     std::vector<const PlacedSurface*> others;

@@ -136,12 +136,16 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
 
 }  // namespace
 
+double faceError_m(const PlacedSurface& part) {
+  const PartSurface& surface = *part.surface;
+  return surface.chordIn(surface.box()) + surface.crackIn(surface.box()) + uncertainty_m(part);
+}
+
 double meshError_m(const PlacedSurface& a, const PlacedSurface& b) {
   double error_m = kOverlapCertain_m;
   for (const PlacedSurface* part : {&a, &b}) {
-    const PartSurface& surface = *part->surface;
-    if (!surface.isClosed()) return std::numeric_limits<double>::infinity();
-    error_m += surface.chordIn(surface.box()) + surface.crackIn(surface.box()) + uncertainty_m(*part);
+    if (!part->surface->isClosed()) return std::numeric_limits<double>::infinity();
+    error_m += faceError_m(*part);
   }
   return error_m;
 }

@@ -118,6 +118,9 @@ OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Po
 /// Thread-safe.
 std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface& b, double near_m);
 
+/// Bound of the distance of a mesh from its true faces anywhere: see meshError_m(). Finite for any mesh.
+double faceError_m(const PlacedSurface& part);
+
 /// Bound of the distance of two meshes from their true faces anywhere, added: the greatest distance of facets
 /// from the curved faces that they approximate, widths of cracks, and rounding. The error of a pair's depth
 /// can be smaller, since it counts only the error near the overlap. Infinite if a mesh has no inside or is

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pair/pair_measures.h"
+#include "rules/asked_pairs.h"
 
 namespace vps::scenes {
 
@@ -22,8 +23,10 @@ ClashGroups::ClashGroups(const std::vector<PlacedSurface>& parts, const CheckRes
     const auto [a, b] = std::minmax(index_of.at(pair.a), index_of.at(pair.b));
     known[a].emplace_back(b, &pair);
   }
+  const PairChoice choice = choiceOf(parts, checked);
   for (const auto& [a, b] : nearPairs(parts, 2 * most_m)) {
     NearPair near{a, b};
+    if (!choice.has(a, b)) continue;
     if (parts[a].drawn->allow_overlap || parts[b].drawn->allow_overlap) continue;
     for (const auto& [other, pair] : known[a]) {
       if (other != b) continue;

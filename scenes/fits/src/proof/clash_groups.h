@@ -13,7 +13,8 @@ namespace vps::scenes {
 /// Greatest number of bodies that are moved at once; each body adds six unknowns.
 inline constexpr std::size_t kMostBodies = 40;
 
-/// Two parts that are or may come near each other. Parts whose overlap the scene allows are no pair.
+/// Two parts that are or may come near each other. Parts whose overlap the scene allows are
+/// no pair, and neither are pairs that the check leaves out.
 struct NearPair {
   std::size_t a = 0, b = 0;
   bool is_clash = false;

@@ -190,6 +190,7 @@ Scene sceneOf(const ImportedCad& cad) {
     part.file = cad.file;
     part.deflection_m = imported.deflection_m;
     part.rounding_m = imported.rounding_m;
+    part.within = imported.within;
     scene.parts.push_back(std::move(part));
   }
   return scene;

@@ -173,8 +173,8 @@ void fields(Archive& archive, T& x) {
   // A part's model is not archived but built again; velocities, tolerances and own resolutions are for
   // simulate() and study(), whose runs are not recorded.
   [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, is_scenery, press_fit_m,
-                          youngs_modulus_Pa, poissons_ratio, tolerance, file, members, fastener, deflection_m,
-                          rounding_m, voxel_m, spacing_m, model, is_cropped] = x;
+                          youngs_modulus_Pa, poissons_ratio, tolerance, file, members, within, fastener,
+                          deflection_m, rounding_m, voxel_m, spacing_m, model, is_cropped] = x;
   archive(part, X_WP, is_fixed, allow_overlap, file);
 }
 template <typename Archive, Either<SceneStep> T>

@@ -41,16 +41,6 @@ void readColor(const SceneKeys& keys, std::array<float, 3>& color) {
   for (std::size_t i = 0; i < 3; ++i) color[i] = static_cast<float>(linearFromSrgb(srgb[i]));
 }
 
-std::string didYouMean(const std::string& name, const std::vector<std::string>& names) {
-  const std::string nearest = nearestWord(name, names);
-  if (!nearest.empty()) return "; did you mean '" + nearest + "'?";
-  constexpr std::size_t kShown = 12;
-  std::string list;
-  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
-    list += (i ? ", " : "; the names are: ") + names[i];
-  return list + (names.size() > kShown ? ", ..." : "");
-}
-
 /// Index of the part that a key names; the message for an unknown name offers the nearest known name.
 template <typename Parts, typename NameOf>
 std::size_t partNamed(const SceneKeys& keys, std::string_view key, const std::string& name,
@@ -80,6 +70,7 @@ ScenePart placedPart(const ImportedPart& imported, const std::string& file, cons
   part.file = file;
   part.deflection_m = imported.deflection_m;
   part.rounding_m = imported.rounding_m;
+  part.within = imported.within;
   return part;
 }
 

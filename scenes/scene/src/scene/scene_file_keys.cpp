@@ -120,6 +120,16 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& k
   return nearest;
 }
 
+std::string didYouMean(const std::string& name, const std::vector<std::string>& names) {
+  const std::string nearest = nearestWord(name, names);
+  if (!nearest.empty()) return "; did you mean '" + nearest + "'?";
+  constexpr std::size_t kShown = 12;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
+    list += (i ? ", " : "; the names are: ") + names[i];
+  return list + (names.size() > kShown ? ", ..." : "");
+}
+
 SceneKeys::SceneKeys(const toml::table& table, const SceneFileContext& context, std::string place,
                      const std::vector<std::string_view>& known)
     : table_(table), context_(context), place_(std::move(place)) {

@@ -38,6 +38,9 @@ struct SceneFileContext {
 /// The element of `known` with the least edit distance to `word`; empty when no element is similar.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known);
 
+/// The end of a message about an unknown name: "; did you mean 'shaft'?", or the first of the known names.
+std::string didYouMean(const std::string& name, const std::vector<std::string>& names);
+
 /// The keys of one table. Each reading function returns false and leaves `out` unchanged when the key is
 /// absent, and throws LoadError when the key's value is wrong (type, range, not finite).
 class SceneKeys {

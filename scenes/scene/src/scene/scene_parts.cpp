@@ -82,6 +82,9 @@ ScenePart unitedPart(const std::string& name, const std::vector<ScenePart>& part
     whole.allow_overlap = whole.allow_overlap || part.allow_overlap;
     whole.press_fit_m = std::max(whole.press_fit_m, part.press_fit_m);
     whole.rounding_m = std::max(whole.rounding_m, part.rounding_m);
+    std::erase_if(whole.within, [&](const std::string& assembly) {
+      return std::ranges::find(part.within, assembly) == part.within.end();
+    });
     if (part.deflection_m) whole.deflection_m = std::max(*part.deflection_m, whole.deflection_m.value_or(0));
   }
   simplify(whole.part.face_colors, whole.part.color);

@@ -10,6 +10,8 @@
 #include "pages/pictures.h"
 #include "pages/svg.h"
 #include "vps_scenes/fits/check_fields.h"
+#include "vps_scenes/fits/rules.h"
+#include "vps_viewer/report/asked_words.h"
 #include "vps_viewer/report/columns.h"
 #include "vps_viewer/report/words.h"
 
@@ -44,6 +46,35 @@ std::string fieldTable(const std::vector<Struct>& structs, const Rows& fields) {
     }
   }
   return html::table(header, rows);
+}
+
+std::string rules(const scenes::CheckResult& result) {
+  if (result.rule_counts.empty()) return "";
+  std::string out =
+      "<h2>Rules</h2>\n<p>A rule is not decided for a pair where the bound is within the error of the "
+      "measured number. A clearance is negative by the depth of an overlap.</p>\n";
+  if (!result.rules.empty()) out += fieldTable(result.rules, scenes::kRuleOutcomeFields);
+  for (const std::string& note : ruleNotes(result)) out += "<p>" + escapeHtml(note) + ".</p>\n";
+  return out;
+}
+
+/// Sentences about what was asked of the check, each in a paragraph.
+std::string asked(const scenes::CheckResult& result) {
+  std::string out;
+  for (std::string words : {chosenWords(result), moveWords(result), ruleWords(result)}) {
+    if (words.empty()) continue;
+    words.front() = static_cast<char>(std::toupper(words.front()));
+    out += "<p>" + escapeHtml(words) + ".</p>\n";
+  }
+  return out;
+}
+
+scenes::Verdict answerOf(const scenes::CheckResult& result) {
+  const scenes::RuleState rules = scenes::worstState(result.rules);
+  if (rules == scenes::RuleState::Broken) return scenes::Verdict::Blocked;
+  const bool is_doubtful = rules == scenes::RuleState::NotDecided;
+  return is_doubtful && result.verdict() == scenes::Verdict::Fits ? scenes::Verdict::NotShown
+                                                                  : result.verdict();
 }
 
 std::string pairs(const scenes::CheckResult& result) {
@@ -126,7 +157,7 @@ std::string play(const scenes::CheckResult& result) {
       else
         row.push_back({both(part.play->m, part.play->error_m, i, part.play_error_m, 1e6, "%.1f"), "n"});
     }
-    std::string ways = part.play ? "" : "the part overlaps another part";
+    std::string ways = part.play ? "" : noPlayWords(part, result);
     for (const Vec3& way : part.ways_out_W) ways += (ways.empty() ? "(" : ", (") + coordinates(way) + ")";
     for (const scenes::ScrewWay& way : part.screw_ways_out)
       ways += (ways.empty() ? "by screw along (" : "; by screw along (") + coordinates(way.axis_W) + "), " +
@@ -166,7 +197,7 @@ std::string checkTablesOfRun(const scenes::CheckResult& result) {
 std::string checkSection(const scenes::CheckResult& result) {
   const bool has_play =
       std::ranges::any_of(result.parts, [](const auto& part) { return part.play.has_value(); });
-  return pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result) +
+  return rules(result) + pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result) +
          sectionPictures(result) + clearancePictures(result) + (has_play ? play(result) : "") +
          meshes(result);
 }
@@ -175,8 +206,10 @@ std::string checkPage(const scenes::CheckResult& result) {
   const std::size_t clashes = result.clashes();
   std::string answer = escapeHtml(assemblyWords(result));
   if (!answer.empty()) answer.front() = static_cast<char>(std::toupper(answer.front()));
-  std::string verdict =
-      answer.empty() ? "No parts overlap as drawn, beyond the stated errors." : answer + ".";
+  std::string verdict = !answer.empty() ? answer + "."
+                        : result.isAboutChosenPairs()
+                            ? "No parts of the chosen pairs overlap as drawn, beyond the stated errors."
+                            : "No parts overlap as drawn, beyond the stated errors.";
   if (clashes > 0) {
     const scenes::CheckedPair& worst = *result.deepestClash();
     verdict = (clashes == 1 ? "Two parts overlap as drawn: "
@@ -187,10 +220,10 @@ std::string checkPage(const scenes::CheckResult& result) {
   }
   constexpr std::array kClass = {"good", "bad", "unsure"};
   static_assert(static_cast<int>(scenes::Verdict::NotShown) == 2);
-  return html::page("Check of " + result.assembly, "<h1>Check of " + escapeHtml(result.assembly) +
-                                                       "</h1>\n<p class=\"verdict " +
-                                                       kClass[static_cast<std::size_t>(result.verdict())] +
-                                                       "\">" + verdict + "</p>\n" + checkSection(result));
+  return html::page("Check of " + result.assembly,
+                    "<h1>Check of " + escapeHtml(result.assembly) + "</h1>\n<p class=\"verdict " +
+                        kClass[static_cast<std::size_t>(answerOf(result))] + "\">" + verdict + "</p>\n" +
+                        asked(result) + checkSection(result));
 }
 
 }  // namespace vps::viewer

@@ -85,9 +85,6 @@ std::string verdictLine(const scenes::AssembleResult& result) {
          ", and nothing proves that this is impossible; " + count;
 }
 
-namespace {
-
-/// "+x", or "(0.71, 0.71, 0.00)".
 std::string directionWords(const Vec3& d) {
   constexpr double kAlong = 0.9995;  // within two degrees
   constexpr std::array kAxes = {"x", "y", "z"};
@@ -99,6 +96,8 @@ std::string directionWords(const Vec3& d) {
   };
   return "(" + rounded(d.x()) + ", " + rounded(d.y()) + ", " + rounded(d.z()) + ")";
 }
+
+namespace {
 
 /// "'bolt' moves by 0.050 mm along +x and turns by 0.010 degrees about (1.00, 0.00, 0.00)"
 std::string motionWords(const scenes::MovedPart& part) {
@@ -163,13 +162,17 @@ std::string assemblyWords(const scenes::CheckResult& result) {
   }
   const std::string freed = freeWords(result.places.moved);
   std::string doubt;
-  if (result.uncertain() > 0)
+  if (result.isAllIgnored())
+    doubt = "all pairs of parts near each other were left out";
+  else if (result.uncertain() > 0)
     doubt = uncertainWords(result);
   else if (!result.alone.empty())
     doubt = aloneWords(result.alone);
   if (!doubt.empty())
     return "not shown: " + doubt + (freed.empty() ? "" : "; the overlapping parts are " + freed);
-  return freed.empty() ? freed : "can be assembled: " + freed;
+  if (freed.empty()) return freed;
+  return std::string("can be assembled") +
+         (result.isAboutChosenPairs() ? ", as far as the chosen pairs show: " : ": ") + freed;
 }
 
 std::string playWords(double way, double error, double usual, double scale, const char* form) {

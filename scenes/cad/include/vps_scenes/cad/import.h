@@ -134,5 +134,8 @@ VPS_SCENES_API std::optional<Vec3> axisFromText(const std::string& text);
 VPS_SCENES_API std::optional<double> unitFromText(const std::string& text);
 /// Parses a length with its unit, "0.2mm" or "20um"; throws LoadError naming `what` when the unit is missing.
 VPS_SCENES_API double lengthFromText(const std::string& text, const std::string& what);
+/// Parses an angle with its unit, "2deg" or "0.01rad", in radians; throws LoadError naming `what` when the
+/// unit is missing.
+VPS_SCENES_API double angleFromText(const std::string& text, const std::string& what);
 
 }  // namespace vps::scenes

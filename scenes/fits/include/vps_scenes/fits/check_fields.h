@@ -4,11 +4,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "vps_scenes/fits/check_types.h"
+#include "vps_scenes/fits/rules.h"
 #include "vps_scenes/scene/fields.h"
 
 namespace vps::scenes {
@@ -222,6 +224,72 @@ inline constexpr auto kCheckedPlacesFields = std::make_tuple(
           "proven that no places without overlap exist; `not_shown`: neither places without overlap nor a "
           "proof were found"),
     field("reason", &CheckedPlaces::reason, "reason for a verdict other than `fits`, in words"));
+
+/// Whether a number was measured for the outcome.
+inline bool isMeasured(const RuleOutcome& outcome) {
+  return std::isfinite(outcome.value_m);
+}
+
+inline constexpr auto kRuleOutcomeFields = std::make_tuple(
+    shown<RuleOutcome>(field("rule", &RuleOutcome::rule, "name of the rule; `--min-gap` for that option"),
+                       {.column = {.heading = "<rule"}}),
+    shown<RuleOutcome>(
+        field("a", &RuleOutcome::a,
+              "name of the pair's first part; the rule's text where no pair could be measured"),
+        {.column = {.heading = "<part"}}),
+    shown<RuleOutcome>(field("b", &RuleOutcome::b, "name of the pair's second part, as `a`"),
+                       {.column = {.heading = "<and"}}),
+    shown<RuleOutcome>(field("measure", &RuleOutcome::measure,
+                             "the number that the rule bounds: `clearance`, `overlap` or `axis offset`"),
+                       {.column = {.heading = "<measure"}}),
+    shown<RuleOutcome>(
+        field("value_m", &RuleOutcome::value_m,
+              "the measured number; a clearance is negative by the depth of an overlap; null: not measured"),
+        {.column = {.heading = "measured [um]", .per_SI = 1e6, .is_shown = isMeasured}}),
+    shown<RuleOutcome>(field("error_m", &RuleOutcome::error_m, "bound of the error of `value_m`"),
+                       {.column = {.heading = "error [um]", .per_SI = 1e6, .is_shown = isMeasured}}),
+    shown<RuleOutcome>(
+        field("bound_m", &RuleOutcome::bound_m, "least clearance, or greatest overlap or axis offset"),
+        {.column = {.heading = "bound [um]", .per_SI = 1e6}}),
+    shown<RuleOutcome>(field("margin_m", &RuleOutcome::margin_m,
+                             "by how much the number is better than the bound; negative: worse"),
+                       {.csv_place = 1, .error = "error_m"}),
+    shown<RuleOutcome>(
+        field("outcome", &RuleOutcome::state,
+              "`kept`, `broken`, or `not decided`: the bound is within the error of the number, or `reason`"),
+        {.column = {.heading = "<outcome",
+                    .is_bad = [](const RuleOutcome& of) { return of.state == RuleState::Broken; }}}),
+    field("reason", &RuleOutcome::reason, "why the rule is not decided, if not by the error; else empty"),
+    field(
+        "words", [](const RuleOutcome& of) { return inWords(of); }, "number, error and bound in words"));
+
+inline constexpr auto kRuleCountFields = std::make_tuple(
+    field("rule", &RuleCount::rule, "name of the rule"),
+    field("kept", &RuleCount::kept,
+          "number of outcomes in `rules`, one for each bound and pair, that are `kept`"),
+    field("not_decided", &RuleCount::not_decided, "number of outcomes that are `not decided`"),
+    field("broken", &RuleCount::broken, "number of outcomes that are `broken`"),
+    field("apart", &RuleCount::apart,
+          "number of pairs that keep the rule since they are farther apart than the check measures; they are "
+          "not in `rules`"),
+    field("left_out", &RuleCount::left_out,
+          "number of pairs near each other that were left out of the check and not judged"));
+static_assert(coversAllMembers<RuleCount>(kRuleCountFields));
+
+inline constexpr auto kLeftOutPairFields =
+    std::make_tuple(field("a", &LeftOutPair::a, "name of the first part of a pair that was not measured"),
+                    field("b", &LeftOutPair::b, "name of the pair's second part"),
+                    field("is_ignored", &LeftOutPair::is_ignored,
+                          "true: `--ignore` leaves the pair out; false: `--between` does not name it"),
+                    field("reason", &LeftOutPair::reason, "why the pair was left out, in words"));
+static_assert(coversAllMembers<LeftOutPair>(kLeftOutPairFields));
+
+inline constexpr auto kPartMoveFields = std::make_tuple(
+    field("part", &PartMove::part, "name of a part that `--move` moved before the check"),
+    field("axis", &PartMove::axis_W, "direction of the displacement, or axis of the rotation, in the world"),
+    field("by_m", &PartMove::by_m, "displacement along `axis`"),
+    field("turn_rad", &PartMove::turn_rad, "rotation about `axis` through the part's own origin"));
+static_assert(coversAllMembers<PartMove>(kPartMoveFields));
 
 inline constexpr auto kCheckWallFields = std::make_tuple(
     field("prepare_s", &CheckResult::prepare_wall_s, "time to prepare the parts"),

@@ -13,6 +13,7 @@
 #include "vps/mesh.h"
 #include "vps/pose.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/fits/check_wishes.h"
 
 namespace vps::scenes {
 
@@ -44,6 +45,10 @@ struct DrawnPart {
   double friction = 0.15;
   double rounding_m = 0;  ///< see ImportedPart; added to the part's error
   bool is_fixed = false;  ///< the search for places without overlap does not move this part
+  /// Names of the assemblies and of the product that contain the part, see ImportedPart::within.
+  std::vector<std::string> within = {};
+  /// Moves that X_WP contains already, see moveParts().
+  std::vector<PartMove> moves = {};
 };
 
 /// What a check measures.
@@ -58,6 +63,12 @@ struct CheckSettings {
   /// are left out. If the list is empty, all parts are checked.
   std::vector<std::string> only_parts = {};
   [[nodiscard]] bool isAsked(const std::string& part) const;
+  /// Pairs to measure; if the list is empty, all pairs are measured. Pairs that match `ignored` are left out
+  /// in any case. A pair that is left out may overlap: it is no clash, and the search for places without
+  /// overlap does not look at it. Play is not measured for a part that is in a pair that is left out.
+  std::vector<PairPattern> between = {}, ignored = {};
+  /// Rules that the result judges. Pairs of a rule with a clearance are measured up to that clearance.
+  std::vector<CheckRule> rules = {};
 };
 
 /// An overlap that exceeds its error by no more than this depth counts as contact and not as a clash, for
@@ -182,7 +193,8 @@ struct CheckedPart {
   double chord_error_m = 0;  ///< greatest distance of the mesh from its curved faces
   std::string mesh_faults;   ///< in words; empty for a closed mesh
   std::string no_inside;     ///< why the surface, or a part of it, encloses no volume; else empty
-  std::optional<Play> play;  ///< empty for a part that clashes or is pressed in, or without has_play
+  /// Empty without has_play, and for a part that clashes, is pressed in, or is in a pair that was left out.
+  std::optional<Play> play;
   Mat3 play_axes_W = Mat3::Identity();  ///< columns: the axes of `play`
   Vec3 play_center_W = Vec3::Zero();    ///< point through which the axes of rotation pass
   /// Bounds of the play's error for contacts at right angles to the motion; Play::error_m bounds the error
@@ -195,6 +207,7 @@ struct CheckedPart {
   /// that the true faces allow, or allow a longer motion than the true faces; `play` may deviate by more than
   /// its error, and ways out may be missing.
   bool is_play_certain = true;
+  std::vector<std::string> within;  ///< as in DrawnPart
 };
 
 /// The outlines of a part in a plane, each a closed chain of points (right, up) [m]. A point is inside the
@@ -273,17 +286,28 @@ struct CheckResult {
   /// With has_sections: one section for each fit and each overlap, up to 60.
   std::vector<CheckedSection> sections;
   double near_m = 0;  ///< as in CheckSettings
+  /// The patterns of CheckSettings.
+  std::vector<PairPattern> between, ignored;
+  /// Pairs that `between` and `ignored` left out, of those whose boxes are at most near_m apart.
+  std::vector<LeftOutPair> left_out;
+  std::vector<RuleOutcome> rules;      ///< the broken ones first, then those that are not decided
+  std::vector<RuleCount> rule_counts;  ///< one for each of CheckSettings::rules
+  std::vector<PartMove> moves;         ///< moves that moveParts() made before the check
   /// With has_maps: one map for each part that is near another one, up to 24.
   std::vector<ClearanceMap> maps;
   double prepare_wall_s = 0, pairs_wall_s = 0, fits_wall_s = 0, pictures_wall_s = 0, play_wall_s = 0,
          places_wall_s = 0;
   [[nodiscard]] std::size_t clashes() const;
+  /// Whether the verdict is about some of the pairs only.
+  [[nodiscard]] bool isAboutChosenPairs() const { return !between.empty() || !left_out.empty(); }
+  /// Whether pairs were ignored and none was measured, so that the check says nothing.
+  [[nodiscard]] bool isAllIgnored() const;
   /// Number of pairs for which the check cannot decide whether the parts overlap.
   [[nodiscard]] std::size_t uncertain() const;
   /// The deepest overlap that is not allowed; null if there is none.
   [[nodiscard]] const CheckedPair* deepestClash() const;
   /// The answer to "do the parts go together?": the verdict of `places`, or NotShown where overlaps are
-  /// uncertain or parts are near no other part.
+  /// uncertain, parts are near no other part, or all pairs are ignored. The rules do not count.
   [[nodiscard]] Verdict verdict() const;
 };
 

@@ -69,8 +69,10 @@ struct ScenePart {
       210e9;  ///< default of Young's modulus and Poisson's ratio: steel, EN 1993-1-1, 3.2.6
   double poissons_ratio = 0.3;
   PartTolerance tolerance;
-  std::string file;                    ///< file that the mesh was read from, for messages
-  std::vector<std::string> members;    ///< names of the united parts of a group; empty for a single part
+  std::string file;                  ///< file that the mesh was read from, for messages
+  std::vector<std::string> members;  ///< names of the united parts of a group; empty for a single part
+  /// See ImportedPart::within; of a united part: what all its members are within.
+  std::vector<std::string> within;
   std::string fastener;                ///< fastener recognized by its shape, in words: "nut M8"; empty: none
   std::optional<double> deflection_m;  ///< see ImportedPart, also for rounding_m
   double rounding_m = 0;

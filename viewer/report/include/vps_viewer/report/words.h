@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "vps/pose.h"
 #include "vps_scenes/fits/check_types.h"
 #include "vps_scenes/run/result.h"
 #include "vps_viewer/export.h"
@@ -46,6 +47,9 @@ VPS_VIEWER_API std::string playWords(double way, double error, double usual, dou
 /// Why the play of a part is uncertain, and by how much: "facets cross others as drawn; ..."; empty if the
 /// play is certain.
 VPS_VIEWER_API std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result);
+
+/// "+x", or "(0.71, 0.71, 0.00)".
+VPS_VIEWER_API std::string directionWords(const Vec3& direction);
 
 /// The answer to "do the parts go together?", unless it is yes for the parts as drawn: "can be assembled:
 /// free if 'bolt' moves by 0.050 mm along +x", "cannot be assembled: ...", "not shown: ..."; empty if the
