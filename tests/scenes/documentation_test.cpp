@@ -16,6 +16,7 @@
 #include "support/temporary_folder.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/fits/check_fields.h"
+#include "vps_scenes/fits/revision_fields.h"
 #include "vps_scenes/planning/plan_fields.h"
 #include "vps_scenes/planning/study_fields.h"
 #include "vps_scenes/planning/trade_fields.h"
@@ -212,12 +213,13 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
   checkSection(
       readme, "trade",
       head + resultLines("rows[].", kTradeRowFields) + resultLines("wall.rows[].", kTradeRowWallFields));
-  checkSection(
-      readme, "check",
-      head + resultLines("pairs[].", kCheckedPairFields) + resultLines("fits[].", kCheckedFitFields) +
-          resultLines("parts[].", kCheckedPartFields) + resultLines("places.", kCheckedPlacesFields) +
-          resultLines("places.moved[].", kMovedPartFields) +
-          resultLines("places.groups[].", kCheckedGroupFields) + resultLines("wall.", kCheckWallFields));
+  checkSection(readme, "check",
+               head + resultLines("pairs[].", kCheckedPairFields) +
+                   resultLines("fits[].", kCheckedFitFields) + resultLines("parts[].", kCheckedPartFields) +
+                   resultLines("places.", kCheckedPlacesFields) +
+                   resultLines("places.moved[].", kMovedPartFields) +
+                   resultLines("places.groups[].", kCheckedGroupFields) +
+                   resultLines("against.", kRevisionFields) + resultLines("wall.", kCheckWallFields));
   checkSection(readme, "plan",
                head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
                    resultLines("wall.", kPlanWallFields));
