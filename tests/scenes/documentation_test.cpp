@@ -16,6 +16,7 @@
 #include "support/temporary_folder.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/fits/check_fields.h"
+#include "vps_scenes/fits/revision_fields.h"
 #include "vps_scenes/fits/rule_keys.h"
 #include "vps_scenes/planning/plan_fields.h"
 #include "vps_scenes/planning/study_fields.h"
@@ -224,7 +225,7 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
           resultLines("moves[].", kPartMoveFields) + resultLines("rules[].", kRuleOutcomeFields) +
           resultLines("rule_counts[].", kRuleCountFields) + resultLines("places.", kCheckedPlacesFields) +
           resultLines("places.moved[].", kMovedPartFields) +
-          resultLines("places.groups[].", kCheckedGroupFields) + resultLines("wall.", kCheckWallFields));
+          resultLines("places.groups[].", kCheckedGroupFields) + resultLines("against.", kRevisionFields) + resultLines("wall.", kCheckWallFields));
   checkSection(readme, "plan",
                head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
                    resultLines("wall.", kPlanWallFields));

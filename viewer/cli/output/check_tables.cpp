@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "output/field_table.h"
 #include "output/table.h"
 #include "vps_scenes/fits/check_fields.h"
 #include "vps_viewer/report/asked_words.h"
-#include "vps_viewer/report/columns.h"
 #include "vps_viewer/report/csv.h"
 #include "vps_viewer/report/words.h"
 
@@ -17,22 +17,6 @@ namespace vps::viewer {
 namespace {
 
 using scenes::PairState;
-
-/// A table with the columns that the field table gives the terminal.
-template <class Struct, class Rows>
-std::string fieldTable(const std::vector<Struct>& structs, const Rows& fields) {
-  std::vector<std::string> heads;
-  for (const ColumnCell& heading : columnHeadings(fields, Medium::Terminal))
-    heads.push_back((heading.is_left ? "<" : "") + heading.text);
-  Table table(heads);
-  for (const Struct& of : structs) {
-    std::vector<std::string> cells;
-    for (ColumnCell& cell : columnCells(of, fields, Medium::Terminal, fixed))
-      cells.push_back(std::move(cell.text));
-    table.add(std::move(cells));
-  }
-  return table.text();
-}
 
 std::string pairTable(const scenes::CheckResult& result) {
   const bool has_overlap = std::ranges::any_of(

@@ -7,6 +7,7 @@
 #include "output/json_fields.h"
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/fits/check_fields.h"
+#include "vps_scenes/fits/revision_fields.h"
 #include "vps_scenes/planning/fidelity_choice.h"
 #include "vps_scenes/planning/plan_fields.h"
 #include "vps_scenes/planning/study_fields.h"
@@ -324,7 +325,7 @@ std::string toJson(const std::string& scene, const std::vector<scenes::WayFault>
   return text({{"scene", scene}, {"way_faults", wayFaults(faults)}});
 }
 
-std::string toJson(const scenes::CheckResult& result) {
+std::string toJson(const scenes::CheckResult& result, const scenes::RevisionChanges* against) {
   Json parts = Json::array();
   for (const scenes::CheckedPart& part : result.parts) {
     Json& json = parts.emplace_back(toObject(part, scenes::kCheckedPartFields));
@@ -360,7 +361,7 @@ std::string toJson(const scenes::CheckResult& result) {
     for (const auto& of : list) out.push_back(toObject(of, rows));
     return out;
   };
-  return text({{"wall", toObject(result, scenes::kCheckWallFields)},
+  Json json = {{"wall", toObject(result, scenes::kCheckWallFields)},
                {"assembly", result.assembly},
                {"verdict", scenes::toText(result.verdict())},
                {"clashes", result.clashes()},
@@ -375,7 +376,9 @@ std::string toJson(const scenes::CheckResult& result) {
                {"places", places},
                {"pairs", pairs},
                {"fits", fits},
-               {"parts", parts}});
+               {"parts", parts}};
+  if (against != nullptr) json["against"] = toObject(*against, scenes::kRevisionFields);
+  return text(json);
 }
 
 std::string toJson(const scenes::MarginResult& result) {

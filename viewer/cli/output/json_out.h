@@ -22,6 +22,7 @@ struct CheckResult;
 struct FidelityChoice;
 struct MarginResult;
 struct Ergonomics;
+struct RevisionChanges;
 struct RunComparison;
 struct StudyResult;
 struct TradeResult;
@@ -113,7 +114,8 @@ std::string toJson(const SnapshotAnswer& answer);
 std::string toJson(const LatencyResult& result);
 std::string toJson(const ExplainAnswer& answer);
 std::string toJson(const scenes::TradeResult& result);
-std::string toJson(const scenes::CheckResult& result);
+/// @param against differences from an older revision, for the key `against`; null: the key is left out
+std::string toJson(const scenes::CheckResult& result, const scenes::RevisionChanges* against = nullptr);
 std::string toJson(const scenes::MarginResult& result);
 std::string toJson(const scenes::RunComparison& result);
 std::string toJson(const scenes::SessionAnswer& answer);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables, sentences and files in which commands report their results: check_tables.cpp, plan_tables.cpp,
-// run_tables.cpp and trade_tables.cpp. JSON is in json_out.h, and the HTML pages are in viewer/report.
+// Tables, sentences and files in which commands report their results: check_tables.cpp, revision_tables.cpp,
+// plan_tables.cpp, run_tables.cpp and trade_tables.cpp. JSON is in json_out.h, and the HTML pages are in
+// viewer/report.
 #pragma once
 
 #include <string>
@@ -9,6 +10,7 @@
 #include "output/output.h"
 #include "vps/errors.h"
 #include "vps_scenes/fits/check_types.h"
+#include "vps_scenes/fits/revisions.h"
 #include "vps_scenes/planning/plan.h"
 #include "vps_scenes/planning/trade.h"
 #include "vps_scenes/run/result.h"
@@ -25,6 +27,8 @@ std::string checkTables(const scenes::CheckResult& result);
 std::string checkHeadline(const scenes::CheckResult& result);
 /// CSV with a line for each number: what, a, b, quantity, value, error.
 std::string checkCsv(const scenes::CheckResult& result);
+/// Tables of the differences of two revisions, and one sentence: revision_tables.cpp.
+std::string revisionTables(const scenes::RevisionChanges& changes);
 
 // --- vps plan
 

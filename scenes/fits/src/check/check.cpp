@@ -241,6 +241,7 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   result.places_wall_s = lap_s();
   if (!settings.has_fits) result.fits.clear();
   if (settings.has_sections) result.sections = checkSections(placed, result, progress);
+  result.plane_sections = planeSections(placed, settings.planes, progress);
   if (settings.has_maps) result.maps = clearanceMaps(placed, result, settings.near_m, progress);
   result.pictures_wall_s = lap_s();
   for (const PlacedSurface& part : placed) result.parts.push_back(describePart(part));

@@ -22,6 +22,11 @@ void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, con
 std::vector<CheckedSection> checkSections(const std::vector<PlacedSurface>& parts, const CheckResult& result,
                                           const Progress& progress);
 
+/// Sections through all parts by planes that the user chose. Throws LoadError for a plane that cuts no part.
+/// Runs on all cores.
+std::vector<PlaneSection> planeSections(const std::vector<PlacedSurface>& parts,
+                                        const std::vector<SectionPlane>& planes, const Progress& progress);
+
 /// The outline of one part in the plane of a section, clipped to a square that is a little larger than the
 /// picture. Vertices in the plane count as in front of it, so that each chain closes. O(facets near the
 /// plane).

@@ -2,6 +2,8 @@
 // vps check: measures overlap, clearance, fits and play of an assembly as drawn, and judges rules for pairs.
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "input/cad_arguments.h"
 #include "output/command.h"
@@ -13,6 +15,7 @@
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/fits/part_moves.h"
 #include "vps_scenes/fits/rules.h"
+#include "vps_scenes/fits/revisions.h"
 #include "vps_viewer/report/pages.h"
 
 namespace vps::viewer {
@@ -21,6 +24,8 @@ namespace {
 
 struct CheckArguments {
   std::vector<std::string> assembly;  ///< CAD files in one frame, or one scene file
+  std::vector<std::string> against;   ///< CAD files or a scene of the new revision; empty: none
+  std::vector<std::string> sections;  ///< planes as text
   std::string near, json, csv, html, pdf;
   std::vector<std::string> between, ignored, moves;
   std::string min_gap, rules;
@@ -76,9 +81,40 @@ int exitStatus(const scenes::CheckResult& result) {
   return status == kGood && rules == scenes::RuleState::NotDecided ? kNotShown : status;
 }
 
+Assembly readAssembly(const CheckArguments& given, const Progress& progress) {
+  return areCadFiles(given.assembly) ? readCad(given, progress) : readScene(given, progress);
+}
+
+/// The new revision, read as the old one is.
+Assembly readNewRevision(CheckArguments given, const Progress& progress) {
+  given.assembly = given.against;
+  return readAssembly(given, progress);
+}
+
+std::vector<scenes::SectionPlane> planesFrom(const CheckArguments& given) {
+  if (!given.sections.empty() && given.html.empty() && given.pdf.empty())
+    throw LoadError("", "", "--section draws into the page; give --html FILE or --pdf FILE as well");
+  std::vector<scenes::SectionPlane> planes;
+  for (const std::string& text : given.sections)
+    planes.push_back(scenes::sectionPlaneFromText(text, "--section"));
+  return planes;
+}
+
+/// What changed since the old revision, which is checked with the settings of the new one, without pictures.
+scenes::RevisionChanges changesSince(const Assembly& old_revision, scenes::CheckSettings settings,
+                                     const scenes::CheckedAssembly& after, const Progress& progress) {
+  settings.has_sections = settings.has_maps = false;
+  settings.planes.clear();
+  const scenes::CheckResult before =
+      scenes::checkAssembly(old_revision.name, old_revision.parts, settings, progress);
+  throwIfStopped();
+  return scenes::compareRevisions({old_revision.parts, before}, after, progress);
+}
+
 int runCheck(const CheckArguments& given) {
   std::vector<std::string> inputs = given.assembly;
   if (!given.rules.empty()) inputs.push_back(given.rules);
+  inputs.insert(inputs.end(), given.against.begin(), given.against.end());
   OutputFile json(given.json, inputs), csv(given.csv, inputs), html(given.html, inputs);
   PdfFile pdf(given.pdf, inputs);
   scenes::CheckSettings settings;
@@ -87,25 +123,33 @@ int runCheck(const CheckArguments& given) {
   settings.has_sections = settings.has_maps = !given.html.empty() || !given.pdf.empty();
   if (!given.near.empty()) settings.near_m = scenes::lengthFromText(given.near, "--near");
   if (!(settings.near_m >= 0)) throw LoadError("", "", "--near is " + given.near + "; expected 0 or more");
+  settings.planes = planesFrom(given);
   readWishes(given, settings);
   std::vector<scenes::PartMove> moves;
   for (const std::string& move : given.moves) moves.push_back(scenes::partMoveFromText(move, "--move"));
   ProgressBar bar;
-  const bool is_cad = areCadFiles(given.assembly);
-  Assembly assembly = is_cad ? readCad(given, bar.progress()) : readScene(given, bar.progress());
-  for (const std::string& output : {given.json, given.csv, given.html, given.pdf})
+  Assembly assembly = readAssembly(given, bar.progress()), old_revision;
+  if (!given.against.empty()) old_revision = std::exchange(assembly, readNewRevision(given, bar.progress()));
+  for (const std::string& output : {given.json, given.csv, given.html, given.pdf}) {
     requireNotRead(output, assembly.read);
+    requireNotRead(output, old_revision.read);
+  }
   scenes::moveParts(assembly.parts, moves, "--move");
+  for (const scenes::SectionPlane& plane : settings.planes) scenes::requireCut(plane, assembly.parts);
   const scenes::CheckResult result =
       scenes::checkAssembly(assembly.name, assembly.parts, settings, bar.progress());
   throwIfStopped();
-  json.write(toJson(result));
+  std::optional<scenes::RevisionChanges> changes;
+  if (!given.against.empty())
+    changes = changesSince(old_revision, settings, {assembly.parts, result}, bar.progress());
+  json.write(toJson(result, changes ? &*changes : nullptr));
   csv.write(checkCsv(result));
-  const std::string page = checkPage(result);
+  const std::string page = checkPage(result, changes ? revisionSection(*changes) : "");
   html.write(page);
   bar.clear();
   std::fputs(checkTables(result).c_str(), stdout);
   std::printf("%s\n", checkHeadline(result).c_str());
+  if (changes) std::fputs(revisionTables(*changes).c_str(), stdout);
   pdf.write(page);  // printed last, so that a failure loses no other result
   return exitStatus(result);
 }
@@ -157,6 +201,19 @@ std::function<int()> addCheck(CLI::App& command) {
   addWishOptions(command, given);
   command.add_flag("--no-play", given->has_no_play,
                    "do not compute the play of parts and their ways out, which take the longest time");
+  command
+      .add_option("--against", given->against,
+                  "new revision of the assembly, as CAD or scene file; the first argument is then the old "
+                  "one. Reports what changed from old to new; all results and the exit status are those of "
+                  "the new revision. Several CAD files: give the option several times")
+      ->type_name("CAD|SCENE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--section", given->sections,
+                  "draw all parts cut by a plane into the page: z=12mm, x=-3mm, or a normal as in "
+                  "0:0.7:0.7=12mm; in the axes after --up; may be given several times; needs --html or --pdf")
+      ->type_name("PLANE")
+      ->allow_extra_args(false);
   command.add_option("--csv", given->csv, "CSV file with one number and its error on each line")
       ->type_name("FILE");
   command.add_option("--html", given->html, "write an HTML page with tables")->type_name("FILE");

@@ -7,12 +7,12 @@
 #include <cmath>
 
 #include "files/html.h"
+#include "pages/field_table.h"
 #include "pages/pictures.h"
 #include "pages/svg.h"
 #include "vps_scenes/fits/check_fields.h"
 #include "vps_scenes/fits/rules.h"
 #include "vps_viewer/report/asked_words.h"
-#include "vps_viewer/report/columns.h"
 #include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
@@ -21,32 +21,6 @@ namespace {
 
 using html::Cell;
 using html::format;
-
-/// A table with the columns that the field table gives the page.
-template <class Struct, class Rows>
-std::string fieldTable(const std::vector<Struct>& structs, const Rows& fields) {
-  const auto inPageUnits = [](std::string heading) {  // the terminal writes "um" and "mm3"
-    if (const std::size_t at = heading.find("[um]"); at != std::string::npos) heading.replace(at, 4, "[µm]");
-    if (const std::size_t at = heading.find("mm3"); at != std::string::npos) heading.replace(at, 3, "mm³");
-    return heading;
-  };
-  std::vector<std::string> header;
-  for (const ColumnCell& heading : columnHeadings(fields, Medium::Page))
-    header.push_back(inPageUnits(heading.text));
-  const WriteNumber write = [](double value, int digits) {
-    return format(value, ("%." + std::to_string(digits) + "f").c_str());
-  };
-  std::vector<std::vector<Cell>> rows;
-  for (const Struct& of : structs) {
-    std::vector<Cell>& row = rows.emplace_back();
-    for (const ColumnCell& cell : columnCells(of, fields, Medium::Page, write)) {
-      std::string css_class = cell.is_left ? "" : "n";
-      if (cell.is_bad) css_class += css_class.empty() ? "bad" : " bad";
-      row.push_back({escapeHtml(cell.text), css_class});
-    }
-  }
-  return html::table(header, rows);
-}
 
 std::string rules(const scenes::CheckResult& result) {
   if (result.rule_counts.empty()) return "";
@@ -84,7 +58,7 @@ std::string pairs(const scenes::CheckResult& result) {
              "faces that they approximate; ")
              .append(kOverlapMeaning)
              .append(".</p>\n") +
-         fieldTable(result.pairs, scenes::kCheckedPairFields);
+         fieldTableOnPage(result.pairs, scenes::kCheckedPairFields);
 }
 
 std::string fits(const scenes::CheckResult& result) {
@@ -92,7 +66,7 @@ std::string fits(const scenes::CheckResult& result) {
          "a thread are its major diameters; its play along the axis measures the clearance of its flanks. "
          "The last column names a common fit of ISO 286 in whose zones both sizes lie, or a thread of ISO "
          "262.</p>\n" +
-         fieldTable(result.fits, scenes::kCheckedFitFields);
+         fieldTableOnPage(result.fits, scenes::kCheckedFitFields);
 }
 
 std::string pressFits(const scenes::CheckResult& result) {
@@ -198,11 +172,11 @@ std::string checkSection(const scenes::CheckResult& result) {
   const bool has_play =
       std::ranges::any_of(result.parts, [](const auto& part) { return part.play.has_value(); });
   return rules(result) + pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result) +
-         sectionPictures(result) + clearancePictures(result) + (has_play ? play(result) : "") +
+         planeSectionPictures(result) + sectionPictures(result) + clearancePictures(result) + (has_play ? play(result) : "") +
          meshes(result);
 }
 
-std::string checkPage(const scenes::CheckResult& result) {
+std::string checkPage(const scenes::CheckResult& result, const std::string& after_answer) {
   const std::size_t clashes = result.clashes();
   std::string answer = escapeHtml(assemblyWords(result));
   if (!answer.empty()) answer.front() = static_cast<char>(std::toupper(answer.front()));
@@ -223,7 +197,7 @@ std::string checkPage(const scenes::CheckResult& result) {
   return html::page("Check of " + result.assembly,
                     "<h1>Check of " + escapeHtml(result.assembly) + "</h1>\n<p class=\"verdict " +
                         kClass[static_cast<std::size_t>(answerOf(result))] + "\">" + verdict + "</p>\n" +
-                        asked(result) + checkSection(result));
+                        asked(result) + after_answer + checkSection(result));
 }
 
 }  // namespace vps::viewer

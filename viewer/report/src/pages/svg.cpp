@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "files/html.h"
+#include "pages/section_shapes.h"
 #include "vps_scenes/fits/check_types.h"
 
 namespace vps::viewer {
@@ -74,79 +75,24 @@ std::string histogram(const std::vector<Column>& columns, const std::string& lef
 
 namespace {
 
-using html::format;
-using Point = std::array<double, 2>;
-using Chain = std::vector<Point>;
-
-constexpr double kSide = 440, kGap = 30, kTop = 6, kFoot = 34;  // [px]
-
-/// One of the two pictures of a section.
-struct Window {
-  Point middle_m{};
-  double half_m = 0, left = 0;
-
-  [[nodiscard]] double scale() const { return kSide / (2 * half_m); }
-  [[nodiscard]] Point toPixel(const Point& p) const {
-    return {left + (p[0] - middle_m[0] + half_m) * scale(), kTop + (middle_m[1] + half_m - p[1]) * scale()};
-  }
-};
-
-/// An outline as an SVG path. Points nearer than a third of a pixel to the previous point are left out.
-std::string pathOf(const scenes::SectionOutline& outline, const Window& window) {
-  std::string out;
-  for (const Chain& chain : outline.chains) {
-    Point last{-1e9, -1e9};
-    bool is_first = true;
-    // Outlines are clipped a little beyond the window, so that coordinates stay small.
-    for (const Point& p : scenes::clippedToSquare(chain, window.middle_m, 1.1 * window.half_m)) {
-      const Point at = window.toPixel(p);
-      if (!is_first && std::hypot(at[0] - last[0], at[1] - last[1]) < 0.3) continue;
-      out.append(is_first ? "M" : "L").append(format(at[0], "%.1f ")).append(format(at[1], "%.1f"));
-      is_first = false;
-      last = at;
-    }
-    if (!is_first) out += "Z";
-  }
-  return out;
-}
-
-/// Length of the scale bar: 1, 2 or 5 times a power of ten, at most a third of the window.
-double barLength(double half_m) {
-  const double most_m = 2 * half_m / 3, power = std::pow(10, std::floor(std::log10(most_m)));
-  for (const double of : {5.0, 2.0})
-    if (of * power <= most_m) return of * power;
-  return power;
-}
-
-std::string text(double x, double y, const std::string& words, const char* anchor = "start") {
-  return "<text x=\"" + format(x, "%.1f") + "\" y=\"" + format(y, "%.1f") + "\" text-anchor=\"" + anchor +
-         "\">" + words + "</text>\n";
-}
-
-std::string scaleBar(const Window& window) {
-  const double bar_m = barLength(window.half_m), x = window.left + 2, y = kTop + kSide + 12;
-  return "<path d=\"M" + format(x, "%.1f") + " " + format(y - 4, "%.1f") + "v8m0 -4h" +
-         format(bar_m * window.scale(), "%.1f") + "m0 -4v8\" stroke=\"#222\" fill=\"none\"/>\n" +
-         text(x + bar_m * window.scale() + 6, y + 4, lengthText(bar_m));
-}
-
-std::string rectangle(double x, double y, double w, double h, const char* style) {
-  return "<rect x=\"" + format(x, "%.1f") + "\" y=\"" + format(y, "%.1f") + "\" width=\"" +
-         format(w, "%.1f") + "\" height=\"" + format(h, "%.1f") + "\" " + style + "/>\n";
-}
+using svg::filled;
+using svg::key;
+using svg::kFoot;
+using svg::kGap;
+using svg::kSide;
+using svg::kTop;
+using svg::pathOf;
+using svg::Point;
+using svg::scaleBar;
+using svg::Window;
 
 /// Fills of the two parts; the first is the inner one of a fit.
 constexpr std::array kFills = {"#9db9dd", "#dcc79c"};
 
-std::string filled(const std::string& path, const std::string& fill, const std::string& more = {}) {
-  return "<path d=\"" + path + "\" fill=\"" + fill +
-         "\" fill-rule=\"evenodd\" stroke=\"#333\" stroke-width=\"0.8\" " + more + "/>\n";
-}
-
 std::string drawn(const scenes::CheckedSection& section, const Window& window, const std::string& id) {
-  std::string out = "<clipPath id=\"w" + id + "\">" + rectangle(window.left, kTop, kSide, kSide, "") +
+  std::string out = "<clipPath id=\"w" + id + "\">" + svg::rectangle(window.left, kTop, kSide, kSide, "") +
                     "</clipPath>\n<g clip-path=\"url(#w" + id + ")\">\n" +
-                    rectangle(window.left, kTop, kSide, kSide, "fill=\"#fff\"");
+                    svg::rectangle(window.left, kTop, kSide, kSide, "fill=\"#fff\"");
   for (std::size_t i = 2; i < section.parts.size(); ++i) {
     const std::string path = pathOf(section.parts[i], window);
     if (!path.empty())
@@ -160,13 +106,8 @@ std::string drawn(const scenes::CheckedSection& section, const Window& window, c
     out += filled(paths[i], kFills[i], "data-part=\"" + escapeHtml(section.parts[i].part) + "\"");
   out += "<clipPath id=\"o" + id + "\"><path d=\"" + paths[1] + "\" clip-rule=\"evenodd\"/></clipPath>\n" +
          "<g clip-path=\"url(#o" + id + ")\">" + filled(paths[0], "#e0202f") + "</g>\n";
-  return out + "</g>\n" + rectangle(window.left, kTop, kSide, kSide, "fill=\"none\" stroke=\"#999\"") +
+  return out + "</g>\n" + svg::rectangle(window.left, kTop, kSide, kSide, "fill=\"none\" stroke=\"#999\"") +
          scaleBar(window);
-}
-
-std::string key(double x, double y, const char* fill, const std::string& words) {
-  return rectangle(x, y - 10, 12, 12, (std::string("fill=\"") + fill + "\" stroke=\"#333\"").c_str()) +
-         text(x + 18, y, words);
 }
 
 std::string captionOf(const scenes::CheckResult& result, const scenes::CheckedSection& section) {
@@ -209,9 +150,10 @@ std::string sectionSvg(const scenes::CheckResult& result, const scenes::CheckedS
   // A frame in the left picture marks the region of the right one.
   const Point middle = whole.toPixel(section.near_m);
   const double half = std::max(5.0, section.near_half_m * whole.scale());
-  out += rectangle(middle[0] - half, middle[1] - half, 2 * half, 2 * half,
-                   "fill=\"none\" stroke=\"#d0007f\" stroke-width=\"1.6\"");
-  out += rectangle(near.left, kTop, kSide, kSide, "fill=\"none\" stroke=\"#d0007f\" stroke-width=\"1.6\"");
+  out += svg::rectangle(middle[0] - half, middle[1] - half, 2 * half, 2 * half,
+                        "fill=\"none\" stroke=\"#d0007f\" stroke-width=\"1.6\"");
+  out +=
+      svg::rectangle(near.left, kTop, kSide, kSide, "fill=\"none\" stroke=\"#d0007f\" stroke-width=\"1.6\"");
   const double y = kTop + kSide + kFoot + 10;
   out += key(3, y, kFills[0], escapeHtml(section.parts[0].part)) +
          key(3 + 0.5 * kSide, y, kFills[1], escapeHtml(section.parts[1].part));

@@ -40,4 +40,8 @@ std::string sectionSvg(const scenes::CheckResult& result, const scenes::CheckedS
 /// The pictures of all sections of a check, with captions.
 std::string sectionPictures(const scenes::CheckResult& result);
 
+/// The pictures of the planes that the user chose, with captions: each part in a colour of its own, overlaps
+/// in red, a scale bar and the names of the parts. Empty without such planes.
+std::string planeSectionPictures(const scenes::CheckResult& result);
+
 }  // namespace vps::viewer

@@ -25,4 +25,13 @@ VPS_SCENES_API std::vector<DrawnPart> drawnParts(const Scene& scene);
 VPS_SCENES_API CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>& parts,
                                          const CheckSettings& settings = {}, const Progress& progress = {});
 
+/// The plane that a text describes: an axis and a place ("z=12mm", "x=-0.5inch"), or a normal and the
+/// distance from the origin along it ("0:0.7:0.7=12mm"; the normal need not have the length 1). Throws
+/// LoadError that names `what`.
+VPS_SCENES_API SectionPlane sectionPlaneFromText(const std::string& text, const std::string& what);
+
+/// Throws LoadError if the plane cuts no part. The message states the range of the parts along the plane's
+/// normal.
+VPS_SCENES_API void requireCut(const SectionPlane& plane, const std::vector<DrawnPart>& parts);
+
 }  // namespace vps::scenes

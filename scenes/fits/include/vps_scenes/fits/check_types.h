@@ -51,12 +51,20 @@ struct DrawnPart {
   std::vector<PartMove> moves = {};
 };
 
+/// A plane in which the assembly is drawn cut: all points p with n_W . p = offset_m.
+struct SectionPlane {
+  std::string name;  ///< as written by the user: "z=12mm"
+  Vec3 n_W = Vec3::UnitZ();
+  double offset_m = 0;
+};
+
 /// What a check measures.
 struct CheckSettings {
   double near_m = 1e-3;  ///< pairs with a greater clearance are not reported
   bool has_fits = true;
   bool has_play = true;  ///< measures play, and the directions in which each part can be removed
   bool has_sections = false;
+  std::vector<SectionPlane> planes = {};  ///< planes of CheckResult::plane_sections
   bool has_maps = false;
   bool has_places = false;  ///< searches for places without overlap (CheckedPlaces); needs has_fits
   /// Names of the parts to check. Pairs that contain no named part, and the play of parts that are not named,
@@ -230,6 +238,17 @@ struct CheckedSection {
   std::vector<SectionOutline> parts;  ///< parts in the picture; the two parts of the fit or pair come first
 };
 
+/// A cut through all parts by a plane that the user chose. The picture shows all outlines. It is seen from
+/// the side of +z or +x, or of -y for a plane across y, so that x points to the right wherever the plane
+/// contains it.
+struct PlaneSection {
+  SectionPlane plane;
+  Vec3 at_W = Vec3::Zero();  ///< the point (0, 0) of the picture, the middle of the outlines
+  Vec3 right_W = Vec3::UnitX(), up_W = Vec3::UnitY();
+  std::array<double, 2> half_m{};     ///< half the width and the height of the outlines
+  std::vector<SectionOutline> parts;  ///< the parts that the plane cuts, in their order
+};
+
 /// The distance of a part's surface from the other parts, at the vertices of a mesh that is refined near
 /// other parts.
 struct ClearanceMap {
@@ -285,6 +304,7 @@ struct CheckResult {
   CheckedPlaces places;  ///< NotShown if parts clash and places were not searched for
   /// With has_sections: one section for each fit and each overlap, up to 60.
   std::vector<CheckedSection> sections;
+  std::vector<PlaneSection> plane_sections;  ///< one for each of CheckSettings::planes
   double near_m = 0;  ///< as in CheckSettings
   /// The patterns of CheckSettings.
   std::vector<PairPattern> between, ignored;

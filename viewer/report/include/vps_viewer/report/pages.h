@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vps_scenes/fits/check_types.h"
+#include "vps_scenes/fits/revisions.h"
 #include "vps_scenes/planning/margin.h"
 #include "vps_scenes/planning/study.h"
 #include "vps_scenes/uses/compare.h"
@@ -19,7 +20,11 @@ VPS_VIEWER_API std::string checkTablesOfRun(const scenes::CheckResult& result);
 /// Tables of pairs, fits and play, for a page that has other sections.
 VPS_VIEWER_API std::string checkSection(const scenes::CheckResult& result);
 /// A whole page of a check, with the answer first.
-VPS_VIEWER_API std::string checkPage(const scenes::CheckResult& result);
+/// @param after_answer HTML that follows the answer, as revisionSection()
+VPS_VIEWER_API std::string checkPage(const scenes::CheckResult& result, const std::string& after_answer = {});
+
+/// The differences of two revisions as tables, with the answer before and after.
+VPS_VIEWER_API std::string revisionSection(const scenes::RevisionChanges& changes);
 
 /// A page of margins: the answer, a bar for each step (the tightest first) and a table.
 VPS_VIEWER_API std::string marginPage(const scenes::MarginResult& result);

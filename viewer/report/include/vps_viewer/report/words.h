@@ -6,6 +6,7 @@
 
 #include "vps/pose.h"
 #include "vps_scenes/fits/check_types.h"
+#include "vps_scenes/fits/revisions.h"
 #include "vps_scenes/run/result.h"
 #include "vps_viewer/export.h"
 
@@ -55,5 +56,9 @@ VPS_VIEWER_API std::string directionWords(const Vec3& direction);
 /// free if 'bolt' moves by 0.050 mm along +x", "cannot be assembled: ...", "not shown: ..."; empty if the
 /// parts go together as drawn.
 VPS_VIEWER_API std::string assemblyWords(const scenes::CheckResult& result);
+
+/// The differences of two revisions in one sentence: "3 parts, 1 clearance and 2 fits changed; the answer was
+/// 'fits' and is 'blocked'", or "nothing changed".
+VPS_VIEWER_API std::string revisionWords(const scenes::RevisionChanges& changes);
 
 }  // namespace vps::viewer
