@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace vps {
 
@@ -19,6 +20,11 @@ StoppableWork::StoppableWork(const Progress& progress, std::string_view doing, d
 
 StoppableWork::~StoppableWork() {
   work_of_thread = enclosing_;
+  if (!progress_ || enclosing_ == nullptr || &enclosing_->progress_ != &progress_) return;
+  // The enclosing work would otherwise repeat a report that is older than those of this work.
+  const std::lock_guard lock(enclosing_->lock_);
+  enclosing_->doing_ = std::move(doing_);
+  enclosing_->share_ = share_;
 }
 
 void StoppableWork::report(std::string_view doing, double share) {
