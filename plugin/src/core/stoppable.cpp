@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/stoppable.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -79,11 +80,13 @@ WorkOnThread::~WorkOnThread() {
 
 void onAllCores(std::size_t count, const std::function<void(std::size_t)>& work) {
   StoppableWork* const own = work_of_thread;
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), [&](const auto& range) {
     // A thread that waits in a loop may take a task of other work.
     const WorkOnThread on_thread(own);
-    pollStop();
-    work(i);
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      pollStop();
+      work(i);
+    }
   });
 }
 

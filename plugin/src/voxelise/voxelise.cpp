@@ -12,6 +12,7 @@
 // of threads gives the same bits.
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 #include <bit>
 #include <cmath>
@@ -271,7 +272,7 @@ void Voxeliser::splatTiles(const SurfaceFeatures& features) {
 void Voxeliser::boundCenters() {
   const std::vector<float> bound = boundCellCenters(layout_->size, brick_of_, surface_);
   const double quantum_m = quantumOf(band_m_);
-  onAllCores(bound.size(), [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, bound.size(), [&](std::size_t i) {  // too short to poll in each round
     constexpr int kCenter = kBrick / 2;
     const int center = layout_->nodesOf(i)[nodeIndex(kCenter, kCenter, kCenter)];
     // Within the band the distance is known, up to rounding; beyond, it is at least nearly the band.
