@@ -15,12 +15,12 @@ namespace vps::test {
 /// Thrown by the callback; no function of the libraries may take it for an error of its own.
 struct StopAsked {};
 
-/// Runs the work with a callback that throws at its n-th call, for n = 1, 2, 3, ... up to some, then in
-/// growing steps, until the work ends without a stop. Expects that the exception arrives and that no call
+/// Runs the work with a callback that throws at its n-th call, for n = 1, 3, 7, 15, ... (late stops
+/// take longest), until the work ends without a stop. Expects that the exception arrives and that no call
 /// follows it.
 /// @return the number of calls of the work that was not stopped
 inline int stopAtEveryCall(const std::function<void(const Progress&)>& work) {
-  for (int n = 1;; n += 1 + n / 2) {
+  for (int n = 1;; n += 1 + n) {
     std::atomic<int> calls = 0, after = 0;
     std::atomic<bool> has_thrown = false;
     const Progress progress = [&](std::string_view, double) {

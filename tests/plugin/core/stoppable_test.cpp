@@ -21,34 +21,48 @@ namespace {
 
 /// Balls that cross each other, one without some facets: repair, union and winding numbers are all needed.
 Mesh crossingBalls() {
-  Mesh mesh = makeSphere(10e-3, 4);
-  append(mesh, transformed(makeSphere(10e-3, 4), Pose::translation(Vec3(8e-3, 1e-3, 0))));
-  Mesh open = transformed(makeSphere(10e-3, 4), Pose::translation(Vec3(0, 15e-3, 2e-3)));
+  Mesh mesh = makeSphere(10e-3, 3);
+  append(mesh, transformed(makeSphere(10e-3, 3), Pose::translation(Vec3(8e-3, 1e-3, 0))));
+  Mesh open = transformed(makeSphere(10e-3, 3), Pose::translation(Vec3(0, 15e-3, 2e-3)));
   open.triangles.resize(open.triangles.size() * 9 / 10);
   append(mesh, open);
   return mesh;
 }
 
-TEST(Stoppable, EachStageOfTheModelsOfAPartEndsAtAnyCall) {
+TEST(Stoppable, TheRepairOfAMeshEndsAtAnyCall) {
+  const Mesh mesh = welded(crossingBalls());
+  EXPECT_GT(test::stopAtEveryCall([&](const Progress& progress) {
+              const StoppableWork work(progress, "repairing");
+              repairMesh(mesh);
+            }),
+            5);
+}
+
+TEST(Stoppable, ASolidEndsAtAnyCall) {
   const Mesh mesh = crossingBalls();
-  const auto repair = [&](const Progress& progress) {
-    const StoppableWork work(progress, "repairing");
-    repairMesh(welded(mesh));
-  };
-  EXPECT_GT(test::stopAtEveryCall(repair), 20);
-  const auto solid = [&](const Progress& progress) {
-    const StoppableWork work(progress, "solid");
-    const Solid made(mesh);
-  };
-  EXPECT_GT(test::stopAtEveryCall(solid), 20);
-  VoxMapSettings of_map;
-  of_map.voxel_m = 0.5e-3;
-  const auto map = [&](const Progress& progress) { buildVoxMap(mesh, of_map, "", progress); };
-  EXPECT_GT(test::stopAtEveryCall(map), 20);
-  PointShellSettings of_shell;
-  of_shell.spacing_m = 0.5e-3;
-  const auto shell = [&](const Progress& progress) { buildPointShell(mesh, of_shell, "", progress); };
-  EXPECT_GT(test::stopAtEveryCall(shell), 20);
+  EXPECT_GT(test::stopAtEveryCall([&](const Progress& progress) {
+              const StoppableWork work(progress, "solid");
+              const Solid made(mesh);
+            }),
+            5);
+}
+
+TEST(Stoppable, AVoxmapEndsAtAnyCall) {
+  const Mesh mesh = crossingBalls();
+  VoxMapSettings settings;
+  settings.voxel_m = 2e-3;
+  EXPECT_GT(
+      test::stopAtEveryCall([&](const Progress& progress) { buildVoxMap(mesh, settings, "", progress); }),
+      10);
+}
+
+TEST(Stoppable, APointshellEndsAtAnyCall) {
+  const Mesh mesh = makeSphere(10e-3, 2);
+  PointShellSettings settings;
+  settings.spacing_m = 1e-3;
+  EXPECT_GT(
+      test::stopAtEveryCall([&](const Progress& progress) { buildPointShell(mesh, settings, "", progress); }),
+      10);
 }
 
 TEST(Stoppable, PollingChangesNoBitOfTheResult) {
