@@ -12,6 +12,7 @@
 
 #include "vps/box.h"
 #include "vps/export.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 
@@ -31,7 +32,8 @@ struct Hierarchy {
   std::vector<HierarchyNode> nodes;  ///< the first node is the root; empty without items
 };
 
-/// Builds a hierarchy from the root down. Cost: O(n log n) if divide() is linear and its parts are balanced.
+/// Builds a hierarchy from the root down. Polls for a stop (see stoppable.h). Cost: O(n log n) if divide() is
+/// linear and its parts are balanced.
 /// @param divide  called once for each node, in the order of the nodes, as divide(std::span<std::uint32_t>)
 ///                with the indices of the node's items (for the root in ascending order). divide() reorders
 ///                the indices and returns how many of them, counted from the first, form the left child; 0
@@ -49,7 +51,9 @@ template <typename Divide>
   };
   std::vector<Waiting> waiting;
   if (item_count > 0) waiting.push_back({0, static_cast<std::uint32_t>(item_count), 0, false});
+  StridedPoll poll;
   while (!waiting.empty()) {
+    poll();
     const Waiting now = waiting.back();
     waiting.pop_back();
     const auto index = static_cast<std::uint32_t>(tree.nodes.size());
@@ -185,7 +189,9 @@ void visitPairs(const BoxTree& a, const BoxTree& b, Place place, Bound bound, Li
     return bound(a.nodes()[i].box, place(b.nodes()[k].box));
   };
   std::vector<Waiting> stack{{0, 0, boundOf(0, 0)}};
+  StridedPoll poll;
   while (!stack.empty()) {
+    poll();
     const Waiting now = stack.back();
     stack.pop_back();
     if (!(now.bound < limit())) continue;

@@ -12,6 +12,7 @@
 
 #include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh_distance.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -145,7 +146,9 @@ void MeshDistance::buildTree() {
   std::vector<Open> open{{0, order, 0}};
   nodes_.reserve(count / 6 + 1);
   nodes_.emplace_back();
+  StridedPoll poll;
   while (!open.empty()) {
+    poll();
     const Open next = open.back();
     open.pop_back();
     int lane = 0;

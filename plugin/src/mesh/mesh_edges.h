@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vps/mesh.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 
@@ -46,11 +47,14 @@ inline std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
   std::vector<HalfEdge> edges(end.back());
   forEachSide([&](const HalfEdge& e) { edges[end[e.low]++] = e; });
   std::size_t first = 0;
-  for (std::size_t vertex = 0; vertex + 1 < end.size(); first = end[vertex++])
+  StridedPoll poll;
+  for (std::size_t vertex = 0; vertex + 1 < end.size(); first = end[vertex++]) {
+    poll();
     std::sort(edges.begin() + static_cast<std::ptrdiff_t>(first),
               edges.begin() + static_cast<std::ptrdiff_t>(end[vertex]), [](const auto& a, const auto& b) {
                 return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
               });
+  }
   return edges;
 }
 
@@ -117,7 +121,9 @@ void forEachTwin(const std::vector<std::array<std::uint32_t, 3>>& triangles, Vis
   std::sort(twins.begin(), twins.end(), [](const Twin& a, const Twin& b) {
     return a.corners != b.corners ? a.corners < b.corners : a.triangle < b.triangle;
   });
+  StridedPoll poll;
   for (std::size_t i = 0; i < twins.size();) {
+    poll();
     std::size_t end = i + 1;
     while (end < twins.size() && twins[end].corners == twins[i].corners) ++end;
     if (end - i > 1) visit(std::span<const Twin>(twins).subspan(i, end - i));
@@ -135,7 +141,9 @@ inline int surplusOf(std::span<const HalfEdge> same) {
 /// Calls visit for each edge, with its half-edges.
 template <typename Visit>
 void forEachEdge(std::span<const HalfEdge> edges, Visit visit) {
+  StridedPoll poll;
   for (std::size_t i = 0; i < edges.size();) {
+    poll();
     std::size_t end = i + 1;
     while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
     visit(edges.subspan(i, end - i));

@@ -7,6 +7,7 @@
 
 #include "mesh/normals.h"
 #include "vps/mesh_distance.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -67,7 +68,9 @@ void MeshDistance::computeSmoothCorners() {
     }
   smooth_corners_.resize(mesh_.triangles.size());
   std::vector<const Corner*> fan;
+  StridedPoll poll;
   for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+    poll();
     const std::span around(corners.data() + first[v], first[v + 1] - first[v]);
     for (const Corner& own : around) {
       const Vec3& face = face_normals_[own.triangle];

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mesh/mesh_edges.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -48,7 +49,9 @@ struct Merger {
     std::size_t size = 16;
     while (size < 2 * mesh.vertices.size()) size *= 2;
     std::vector<std::uint32_t> table(size, UINT32_MAX);
+    StridedPoll poll;
     for (const Vec3& p : mesh.vertices) {
+      poll();
       // Squares of numbers below 1e-150 underflow, so lengths would be zero. Adding +0 turns -0 into +0.
       const Vec3 q = (p.array().abs() < 1e-150).select(0.0, p.array()).matrix() + Vec3::Zero();
       CellKey key;
@@ -63,7 +66,9 @@ struct Merger {
   /// Finds vertices in cells as wide as the tolerance: all near vertices are in the 27 cells around a vertex.
   void within(double tolerance_m) {
     std::unordered_map<CellKey, std::vector<std::uint32_t>, CellHash> cells(mesh.vertices.size());
+    StridedPoll poll;
     for (const Vec3& p : mesh.vertices) {
+      poll();
       const CellKey home = {static_cast<std::int64_t>(std::floor(p.x() / tolerance_m)),
                             static_cast<std::int64_t>(std::floor(p.y() / tolerance_m)),
                             static_cast<std::int64_t>(std::floor(p.z() / tolerance_m))};

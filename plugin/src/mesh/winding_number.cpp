@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/winding_number.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,7 +76,8 @@ void cutSlivers(std::vector<Corners>& triangles) {
   if (!(high > 0)) return;
   std::vector<Corners> cut;
   cut.reserve(3 * triangles.size());
-  for (const Corners& t : triangles) halve(t, high, cut);
+  StridedPoll poll;
+  for (const Corners& t : triangles) poll(), halve(t, high, cut);
   triangles = std::move(cut);
 }
 
@@ -221,7 +223,9 @@ void WindingNumber::build(std::vector<Corners> triangles, double cluster_error) 
 /// Computes the moments from the leaves up, and from the moments each node's series and reach.
 void WindingNumber::expand() {
   std::vector<Moments> moments(nodes_.size());
+  StridedPoll poll;
   for (std::size_t n = nodes_.size(); n-- > 0;) {
+    poll();
     Node& node = nodes_[n];
     Moments& m = moments[n];
     const std::span<const Corners> triangles = std::span(corners_).subspan(node.first, node.end - node.first);

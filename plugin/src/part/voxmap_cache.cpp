@@ -18,6 +18,7 @@
 #include "pointshell/shell_hierarchy.h"
 #include "voxmap/voxmap_access.h"
 #include "vps/solid.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -258,6 +259,7 @@ fs::path VoxMapCache::shellFileOf(const Mesh& mesh, const PointShellSettings& se
 
 VoxMap VoxMapCache::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                           const Progress& progress, MeshReport* report) const {
+  const StoppableWork work(progress, "repairing the mesh");
   return readOrBuild(mesh, settings, report, [&](MeshReport& found) {
     return buildVoxMap(Solid(mesh, part), settings, part, progress, &found);
   });

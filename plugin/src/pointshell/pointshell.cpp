@@ -9,6 +9,7 @@
 #include "pointshell/shell_samples.h"
 #include "vps/errors.h"
 #include "vps/solid.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -100,9 +101,8 @@ std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
 /// @param is_sheet  other parts touch the surface from both sides, and at its border
 PointShell sampled(const Mesh& mesh, const PointShellSettings& settings, const Progress& progress,
                    bool is_sheet = false) {
-  const auto report = [&progress](double share) {
-    if (progress) progress("sampling points", share);
-  };
+  StoppableWork work(progress);
+  const auto report = [&work](double share) { work.report("sampling points", share); };
   report(0);
   const std::vector<Vec3> normals = triangleNormals(mesh);
   std::vector<ShellSample> samples =
@@ -129,6 +129,7 @@ PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
                            const Progress& progress) {
   requireUsable(mesh, "", part);
   requireSettings(mesh, settings, part);
+  const StoppableWork work(progress, "sampling points");
   return sampled(welded(mesh), settings,
                  progress);  // unwelded, every edge would be open, and therefore sharp
 }

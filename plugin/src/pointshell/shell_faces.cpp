@@ -11,6 +11,7 @@
 #include "pointshell/shell_grid.h"
 #include "pointshell/shell_samples.h"
 #include "vps/errors.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -268,6 +269,7 @@ class FaceSampler {
   /// Halves the piece until it is at most a spacing in extent.
   template <class Visit>
   void forEachBlock(const Piece& piece, const Vec3& n, const Visit& visit) {
+    pollStop();
     if (piece.extent() <= spacing_m_) {
       gather(piece, n);
       visit(piece, n);
@@ -280,6 +282,7 @@ class FaceSampler {
   /// is d from a sample lies within d + e of it. If d + e is more than the spacing, either the centre is free
   /// for a new sample or the piece is halved; halving ends at e <= (1 - kMinGap) spacing at the latest.
   void cover(const Piece& piece, const Vec3& n) {
+    pollStop();
     const double extent_m = piece.extent();
     const Vec3 center = piece.center();
     const double distance_m = nearest(center).distance_m;
@@ -289,6 +292,7 @@ class FaceSampler {
   }
 
   void dealOut(const Piece& piece) {
+    pollStop();
     if (piece.extent() > kAreaPiece * spacing_m_) {
       for (const Piece& half : piece.halves()) dealOut(half);
       return;

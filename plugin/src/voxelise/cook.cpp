@@ -4,6 +4,7 @@
 #include "voxmap/voxmap_access.h"
 #include "vps/errors.h"
 #include "vps/solid.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -20,13 +21,14 @@ template <typename Part>
 VoxMap cooked(const std::vector<Part>& parts, const VoxMapSettings& settings, const Progress& progress) {
   if (parts.empty()) throw LoadError("", "", "no parts to cook into one voxmap; give at least one");
   VoxMap cooked;
+  StoppableWork work(progress);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (progress) progress("cooking", static_cast<double>(i) / static_cast<double>(parts.size()));
+    work.report("cooking", static_cast<double>(i) / static_cast<double>(parts.size()));
     requirePose(parts[i].X_MP);
     const VoxMap map = mapOf(parts[i], settings);
     cooked = i == 0 ? map : mergedVoxMap(cooked, map);
   }
-  if (progress) progress("cooking", 1);
+  work.report("cooking", 1);
   return parts.size() > 1 ? packedVoxMap(cooked) : cooked;
 }
 

@@ -27,6 +27,7 @@
 #include "voxmap/voxmap_access.h"
 #include "vps/mesh_repair.h"
 #include "vps/solid.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 
@@ -150,10 +151,10 @@ void Voxeliser::gather(const SurfaceFeatures& features) {
   constexpr std::size_t kGrain = 4096;
   const std::size_t count = Splatter(features, reach_).count();
   std::vector<std::vector<Reached>> reached((count + kGrain - 1) / kGrain);
-  tbb::parallel_for(std::size_t{0}, reached.size(), [&](std::size_t chunk) {
+  onAllCores(reached.size(), [&](std::size_t chunk) {
     Splatter splatter(features, reach_);
     for (std::size_t i = chunk * kGrain; i < std::min(count, (chunk + 1) * kGrain); ++i)
-      gatherFeature(splatter, static_cast<std::uint32_t>(i), reached[chunk]);
+      pollStop(), gatherFeature(splatter, static_cast<std::uint32_t>(i), reached[chunk]);
   });
 
   // Counting sort by tile.
@@ -170,7 +171,9 @@ void Voxeliser::gather(const SurfaceFeatures& features) {
 void Voxeliser::splatTile(Splatter& splatter, std::size_t at, Tile& tile) const {
   tile.fill(kFar);
   const Vec3 origin = kTile * tileAt(at).cast<double>();
-  for (std::size_t k = first_[at]; k < first_[at + 1]; ++k) splatter.splat(features_[k], origin, tile.data());
+  StridedPoll poll;
+  for (std::size_t k = first_[at]; k < first_[at + 1]; ++k)
+    poll(), splatter.splat(features_[k], origin, tile.data());
 }
 
 /// The bricks of a tile that have a node within the band.
@@ -246,7 +249,7 @@ void Voxeliser::splatTiles(const SurfaceFeatures& features) {
   tbb::enumerable_thread_specific<Splatter> splatters([&] { return Splatter(features, reach_); });
   for (std::size_t begin = 0; begin < wanted.size(); begin += kBatch) {
     const std::size_t count = std::min(kBatch, wanted.size() - begin);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    onAllCores(count, [&](std::size_t i) {
       splatTile(splatters.local(), wanted[begin + i], tiles[i]);
       bricks[i] = bricksOf(tiles[i], kTileBricks * tileAt(wanted[begin + i]));
     });
@@ -259,7 +262,7 @@ void Voxeliser::splatTiles(const SurfaceFeatures& features) {
     if (taken == 0) continue;
     writer.take(taken);
     surface_.resize(surface_.size() + taken);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    onAllCores(count, [&](std::size_t i) {
       for (std::size_t k = 0; k < bricks[i].size(); ++k)
         cutBrick(tiles[i], bricks[i][k], slot[i] + k, writer);
     });
@@ -269,7 +272,7 @@ void Voxeliser::splatTiles(const SurfaceFeatures& features) {
 void Voxeliser::boundCenters() {
   const std::vector<float> bound = boundCellCenters(layout_->size, brick_of_, surface_);
   const double quantum_m = quantumOf(band_m_);
-  tbb::parallel_for(std::size_t{0}, bound.size(), [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, bound.size(), [&](std::size_t i) {  // too short to poll in each round
     constexpr int kCenter = kBrick / 2;
     const int center = layout_->nodesOf(i)[nodeIndex(kCenter, kCenter, kCenter)];
     // Within the band the distance is known, up to rounding; beyond, it is at least nearly the band.
@@ -280,9 +283,8 @@ void Voxeliser::boundCenters() {
 }
 
 std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
-  const auto report = [&](double share) {
-    if (progress) progress("voxelising", share);
-  };
+  StoppableWork work(progress);
+  const auto report = [&](double share) { work.report("voxelising", share); };
   report(0);
   layOutDirectory();
   {
@@ -359,6 +361,7 @@ VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::
                    const Progress& progress, MeshReport* report) {
   requireUsable(mesh, "", part);
   requireFits(mesh, settings, part);
+  const StoppableWork work(progress, "repairing the mesh");
   Mesh shared = welded(mesh);  // signs need shared vertices
   requireUsable(shared, "", part);
   RepairedMesh repaired = repairMesh(std::move(shared));
@@ -370,6 +373,7 @@ VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::
 
 VoxMap buildVoxMap(const PlacedSolid& part, const VoxMapSettings& settings, const std::string& name,
                    const Progress& progress, MeshReport* report) {
+  const StoppableWork work(progress, "voxelising");
   const Solid& solid = *part.solid;
   const Interior* interior = solid.interior();
   if (part.X_MP.R.isIdentity(0) && part.X_MP.p.isZero(0)) {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "voxelise/winding_signs.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
 #include "voxelise/brick_assembly.h"
 #include "voxmap/field_bounds.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -188,7 +187,7 @@ void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>&
   std::atomic<std::size_t> nodes = 0, certain = 0;
   std::atomic<int> steepest = 0;
   const Within within(interior_, voxel_m);
-  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+  onAllCores(cells.size(), [&](std::size_t i) {
     NodeValue* of_brick = layout.pool->nodes(layout.bricks[cells[i]]);
     const Count count = signBrick(of_brick, kBrick * layout.cellAt(cells[i]), voxel_m, quantum_m);
     clip(of_brick, layout.cellAt(cells[i]), within);
@@ -216,7 +215,7 @@ std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double
   for (std::size_t i = 0; i < is_uncertain.size(); ++i)
     for (int k = 0; k < 8 && is_uncertain[i] != 0; ++k) side[cornerOf(i, k)] = Pending;
   const Within within(interior_, voxel_m);
-  tbb::parallel_for(std::size_t{0}, side.size(), [&](std::size_t i) {
+  onAllCores(side.size(), [&](std::size_t i) {
     if (side[i] != Pending) return;
     const Index3 node = kBrick * corners.cellAt(i);
     side[i] = within.holds(node) && interior_.windingNumber(voxel_m * node.cast<double>()) > 0.5 ? In : Out;
@@ -242,7 +241,7 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
     return Box{low, low + Vec3::Constant(cell_m)};
   };
   std::vector<float> loss(layout.bricks.size()), margin(layout.bricks.size(), -1);
-  tbb::parallel_for(std::size_t{0}, layout.bricks.size(), [&](std::size_t i) {
+  onAllCores(layout.bricks.size(), [&](std::size_t i) {
     if (isConstant(layout.bricks[i]))
       loss[i] = static_cast<float>(std::min(1.0, interior_.slope().bound(boxOf(i)) * cell_m));
   });
@@ -344,7 +343,7 @@ bool signsAgree(const VoxLayout& layout, double voxel_m, double quantum_m) {
       static_cast<std::uint16_t>(voxel_m / quantum_m * (1 + 1e-4) + 2);  // below 2^15: h < band / 3
   const std::vector<std::size_t> cells = cellsWithBricks(layout);
   std::atomic<bool> agree = true;
-  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+  onAllCores(cells.size(), [&](std::size_t i) {
     // Beyond the band signs are only copied from neighbours.
     if (hasJump(layout.nodesOf(cells[i]), step)) agree.store(false, std::memory_order_relaxed);
   });

@@ -81,9 +81,11 @@ TEST(SceneModels, ProgressGrowsAndStopsTheBuildByThrowing) {
   std::vector<double> shares;
   options.progress = [&](std::string_view, double share) { shares.push_back(share); };
   buildModels(scene, options);
-  EXPECT_EQ(shares.size(), 8u);
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_EQ(shares.back(), 1);
+  shares.erase(std::unique(shares.begin(), shares.end()),
+               shares.end());  // inner loops repeat the latest report
+  EXPECT_EQ(shares.size(), 8u);
 
   Scene again = tubes(7);
   options.progress = [](std::string_view, double) { throw std::runtime_error("stopped"); };

@@ -37,7 +37,11 @@ void addCadOptions(CLI::App& command, CadArguments& given) {
       ->type_name("NAME");
   command.add_flag("--no-groups", given.has_no_groups,
                    "find no groups except those of --group; each solid is a part");
-  command.add_option("--time-limit", given.time_limit_s, "stop reading a file after this many seconds")
+  command
+      .add_option(
+          "--time-limit", given.time_limit_s,
+          "stop after this many seconds of reading all files and welding their meshes; vps import also "
+          "counts the repair of the meshes and the search for fasteners")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
 }

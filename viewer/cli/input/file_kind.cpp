@@ -10,6 +10,7 @@
 #include "input/cad_arguments.h"
 #include "output/terminal.h"
 #include "vps/solid.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/scene/model_options.h"
 
@@ -73,7 +74,9 @@ OperandKind operandKind(const std::string& file) {
 Mesh readMesh(const std::string& file, std::optional<double> unit_m) {
   scenes::ImportSettings settings;
   settings.unit_m = unit_m;
-  const scenes::ImportedCad cad = scenes::importCad(file, settings);
+  ProgressBar bar;
+  const scenes::ImportedCad cad = scenes::importCad(file, settings, bar.progress());
+  bar.clear();
   for (const std::string& warning : cad.warnings) warn(file + ": " + warning);
   if (unit_m && cad.states_unit) warn(file + ": " + kUnusedUnits);
   Mesh mesh;
@@ -84,6 +87,7 @@ Mesh readMesh(const std::string& file, std::optional<double> unit_m) {
 
 VoxMap mapOf(const Mesh& mesh, const VoxMapSettings& settings, const std::string& file,
              const std::optional<VoxMapCache>& cache, const Progress& progress) {
+  const StoppableWork work(progress, "repairing the mesh");
   MeshReport report;
   VoxMap map = cache ? cache->build(mesh, settings, file, progress, &report)
                      : buildVoxMap(Solid(mesh, file), settings, file, progress, &report);

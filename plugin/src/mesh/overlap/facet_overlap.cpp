@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/overlap/overlap_search.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <array>
@@ -141,6 +142,7 @@ std::vector<FlushPoint> searchFacets(const OverlapMesh& in, const OverlapMesh& o
   FacetSearch search(in, deepest);
   const std::vector<Vec3>& v = other.mesh().vertices;
   for (const std::uint32_t facet : facets) {
+    pollStop();
     const auto& t = other.mesh().triangles[facet];
     search.search(X_SO * v[t[0]], X_SO * v[t[1]], X_SO * v[t[2]]);
   }
@@ -153,6 +155,7 @@ void searchBelow(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_
   const double reach_m = in.box().size().norm();
   std::vector<double> crossings;
   for (const auto& [p_S, normal_S] : points) {
+    pollStop();
     const Vec3 end = p_S - reach_m * normal_S;
     crossings.clear();
     in.solid().appendCrossings(p_S, end, crossings);

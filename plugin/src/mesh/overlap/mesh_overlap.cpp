@@ -9,6 +9,7 @@
 #include "mesh/overlap/overlap_search.h"
 #include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 
@@ -85,7 +86,8 @@ struct CrossedEdge {
 std::vector<CrossedEdge> edgesNear(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   std::vector<CrossedEdge> near;
   const std::vector<Vec3>& vertices = other.mesh().vertices;
-  for (const std::uint32_t group : other.groups().near(moved(in.box(), X_SO.inverse())))
+  for (const std::uint32_t group : other.groups().near(moved(in.box(), X_SO.inverse()))) {
+    pollStop();
     for (std::size_t i = kGroup * group; i < std::min(kGroup * (group + 1), other.edges().size()); ++i) {
       const auto& [from, to] = other.edges()[i];
       CrossedEdge edge{i, X_SO * vertices[from], X_SO * vertices[to], {}};
@@ -93,6 +95,7 @@ std::vector<CrossedEdge> edgesNear(const OverlapMesh& in, const OverlapMesh& oth
       in.solid().appendCrossings(edge.a, edge.b, edge.crossings);
       near.push_back(std::move(edge));
     }
+  }
   return near;
 }
 
@@ -101,6 +104,7 @@ std::vector<std::size_t> searchEdges(const OverlapMesh& in, std::vector<CrossedE
                                      Deepest& deepest) {
   std::vector<std::size_t> touching;
   for (CrossedEdge& edge : edges) {
+    pollStop();
     std::sort(edge.crossings.begin(), edge.crossings.end());
     edge.crossings.push_back(1);
     double from = 0;

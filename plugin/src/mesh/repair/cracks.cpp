@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "vps/bounding_volume_hierarchy.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -57,6 +58,7 @@ class Joiner {
     bool has_joined = false;
     for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) {
       if (!is_open_[v]) continue;
+      pollStop();
       forEachNear(mesh_.vertices[v], mesh_.vertices[v], tolerance_m, [&](std::uint32_t other) {
         const double gap_m = (mesh_.vertices[other] - mesh_.vertices[v]).norm();
         if (other == v || gap_m > std::min({tolerance_m, reach_m_[v], reach_m_[other]})) return;
@@ -103,6 +105,7 @@ class Joiner {
       const HalfEdge& e = same[0];
       on.clear();
       if (same.size() == 1) {
+        pollStop();
         const Vec3 &from = mesh_.vertices[e.low], along = mesh_.vertices[e.high] - from;
         forEachNear(from, mesh_.vertices[e.high], tolerance_m, [&](std::uint32_t v) {
           if (!has_open[v] || groups.find(v) != v || v == e.low || v == e.high) return;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/mesh_edges.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 
@@ -69,6 +70,7 @@ void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshR
   const double tolerance_m = 1e-6 * bounds(mesh).size().norm();
   Groups groups(mesh.vertices.size());
   for (const auto& [a, b] : open) {
+    pollStop();
     groups.join(a, b);
     const Vec3 &from = mesh.vertices[a], &to = mesh.vertices[b];
     const auto first =
@@ -109,7 +111,8 @@ class FlatFacets {
   bool leaveOut() {
     const std::size_t count = mesh_.triangles.size();
     bool has_any = false;
-    for (std::uint32_t i = 0; i < count; ++i)
+    StridedPoll poll;
+    for (std::uint32_t i = 0; i < count; ++i, poll())
       if (isDegenerate(mesh_, mesh_.triangles[i])) has_any = true, leaveOut(i);
     std::erase_if(mesh_.triangles, hasRepeatedCorner);
     return has_any;

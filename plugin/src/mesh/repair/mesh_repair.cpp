@@ -3,8 +3,6 @@
 // more than 400 lines because its steps share the state of one repair.
 #include "vps/mesh_repair.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +14,7 @@
 #include "mesh/union/shell_union.h"
 #include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh_distance.h"
+#include "vps/stoppable.h"
 #include "vps/winding_number.h"
 
 namespace vps {
@@ -344,12 +343,13 @@ class Repairer {
     patch_of_.assign(count, UINT32_MAX);
     is_flipped_.assign(count, 0);
     std::vector<std::uint8_t> is_turned(count, 0);
+    StridedPoll poll;
     for (std::uint32_t seed = 0; seed < count; ++seed) {
       if (patch_of_[seed] != UINT32_MAX) continue;
       const auto id = static_cast<std::uint32_t>(parts.size());
       std::vector<std::uint32_t>& part = parts.emplace_back(1, seed);
       patch_of_[seed] = id;
-      for (std::size_t next = 0; next < part.size(); ++next) {
+      for (std::size_t next = 0; next < part.size(); ++next, poll()) {
         const std::uint32_t i = part[next];
         for (const std::uint32_t side : across[i]) {
           if (side == UINT32_MAX || patch_of_[side / 2] != UINT32_MAX) continue;
@@ -468,6 +468,7 @@ class Repairer {
     std::optional<ShellNesting> nesting;
     std::vector<std::uint32_t> around;
     for (std::uint32_t i = 0; i < closed.size(); ++i) {
+      pollStop();
       Patch& patch = patches_[closed[i]];
       around.clear();
       tree.forEachOverlap(boxes, patch.box, [&](std::uint32_t k) {
@@ -511,11 +512,14 @@ class Repairer {
   /// Mean winding number in the planes of each patch's samples.
   std::vector<double> meanInPlane(const WindingNumber& w) {
     std::vector<double> mean(patches_.size(), 0.5);
-    tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
+    onAllCores(patches_.size(), [&](std::size_t i) {
       const std::vector<Facet> samples = samplesOf(patches_[i], kSamples);
       if (samples.empty()) return;
       double sum = 0;
-      for (const Facet& f : samples) sum += inPlane(w, f);
+      for (const Facet& f : samples) {
+        pollStop();
+        sum += inPlane(w, f);
+      }
       mean[i] = sum / static_cast<double>(samples.size());
     });
     return mean;
@@ -555,10 +559,11 @@ class Repairer {
     for (int sweep = 0; sweep < 3; ++sweep) {
       const MeshDistance all(mesh());
       std::vector<char> is_wrong(open.size(), 0);
-      tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) {
+      onAllCores(open.size(), [&](std::size_t k) {
         const std::vector<Facet> samples = samplesOf(patches_[open[k]], most);
         int votes = 0;
         for (const Facet& f : samples) {
+          pollStop();
           const auto own = static_cast<std::uint32_t>(open[k]);
           votes += sideSeen(all, f, f.normal, own, size_m) - sideSeen(all, f, -f.normal, own, size_m);
         }
@@ -576,6 +581,7 @@ class Repairer {
     const std::vector<double> mean = meanInPlane(WindingNumber(mesh()));
     std::vector<std::size_t> aside;
     for (std::size_t i = 0; i < patches_.size(); ++i) {
+      pollStop();
       if (patches_[i].is_closed || std::abs(mean[i] - 0.5) < kClearly) continue;
       const WindingNumber alone(mesh(), patches_[i].triangles);
       double self = 0;
@@ -605,6 +611,7 @@ class Repairer {
     for (std::uint32_t i = 0; i < is_kept_.size(); ++i)
       if (is_kept_[i] == Keep::Both) bounding.push_back(i);
     for (const std::size_t i : aside) {
+      pollStop();
       const std::vector<std::uint32_t>& own = patches_[i].triangles;
       bounding.insert(bounding.end(), own.begin(), own.end());
       const WindingNumber w(mesh(), bounding);
@@ -626,7 +633,7 @@ class Repairer {
     // Test every facet only if shells' boxes overlap or a sample of a patch lies within the solid.
     if (!mayOverlap(w)) return;
     const double size_m = bounds(mesh()).size().norm();
-    tbb::parallel_for(std::size_t{0}, bounding.size(), [&](std::size_t k) {
+    onAllCores(bounding.size(), [&](std::size_t k) {
       if (isWithinSolidOrVoid(w, bounding[k], size_m)) is_kept_[bounding[k]] = Keep::Solid;
     });
     std::vector<char> is_overlapping(patches_.size(), 0);
@@ -644,8 +651,10 @@ class Repairer {
     const std::vector<Box> boxes = boxesOfClosed();
     if (haveOverlap(boxes)) return true;
     for (const Patch& patch : patches_)
-      for (const Facet& f : samplesOf(patch, kSamples))
+      for (const Facet& f : samplesOf(patch, kSamples)) {
+        pollStop();
         if (inPlane(w, f) > kInternal) return true;
+      }
     return false;
   }
 
@@ -677,6 +686,7 @@ class Repairer {
     const int n = std::min(kMostDivisions, static_cast<int>(side_m / (kLarge * size_m)));
     for (int i = 0; i <= n && n > 0; ++i)
       for (int k = 0; k <= n - i; ++k) {
+        pollStop();
         f.center = corner + static_cast<double>(i) / n * u + static_cast<double>(k) / n * v;
         if (isSurface()) return false;
       }

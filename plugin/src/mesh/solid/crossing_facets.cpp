@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "mesh/triangle_distance.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -78,9 +79,12 @@ class Crossings {
 
   std::vector<Crossed> run() {
     constexpr std::size_t kGrain = 256;
+    StoppableWork* const own = WorkOnThread::current();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found_.size(), kGrain), [&](const auto& range) {
+      const WorkOnThread on_thread(own);
       std::vector<std::uint32_t> near;
-      for (std::size_t i = range.begin(); i < range.end(); ++i) test(static_cast<std::uint32_t>(i), near);
+      for (std::size_t i = range.begin(); i < range.end(); ++i)
+        pollStop(), test(static_cast<std::uint32_t>(i), near);
     });
     return {found_.begin(), found_.end()};
   }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/solid/interior.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "mesh/mesh_edges.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -96,7 +95,7 @@ std::vector<float> sureDistances(const MeshDistance& surface, const Interior& in
   const std::vector<Crossed> crossed = crossedBySolid(surface, interior.mesh());
   const double size_m = bounds(mesh).size().norm();
   std::vector<float> sure_m(mesh.triangles.size(), 0);
-  tbb::parallel_for(std::size_t{0}, sure_m.size(), [&](std::size_t i) {
+  onAllCores(sure_m.size(), [&](std::size_t i) {
     if (is_regular[i] == 0 || crossed[i] != Crossed::No) return;
     const auto triangle = static_cast<std::uint32_t>(i);
     // The distance is rounded down, because the conversion to float may round up.

@@ -12,6 +12,7 @@
 #include "mesh/normals.h"
 #include "mesh/triangle_distance.h"
 #include "vps/bounding_volume_hierarchy.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -54,7 +55,7 @@ class Arranger {
   std::optional<Arrangement> run() {
     for (const auto& [f, g] : pairs_) prepare(f), prepare(g);
     forEachOrderedPair([&](std::uint32_t f, std::uint32_t g) { verticesOnSides(f, g); });
-    for (const auto& [f, g] : pairs_) crossSides(f, g);
+    for (const auto& [f, g] : pairs_) pollStop(), crossSides(f, g);
     forEachOrderedPair([&](std::uint32_t f, std::uint32_t g) { verticesInFacet(f, g); });
     forEachOrderedPair([&](std::uint32_t f, std::uint32_t g) { sidesThroughFacet(f, g); });
     addSections();
@@ -73,7 +74,7 @@ class Arranger {
 
   template <typename Visit>
   void forEachOrderedPair(Visit visit) {
-    for (const auto& [f, g] : pairs_) visit(f, g), visit(g, f);
+    for (const auto& [f, g] : pairs_) pollStop(), visit(f, g), visit(g, f);
   }
 
   // ---- vertices
@@ -331,7 +332,8 @@ class Arranger {
   void addSections() {
     std::vector<std::vector<std::uint32_t>> own;
     for (const Facet& f : facets_) own.push_back(pointsOf(f));
-    for (const auto& [f, g] : pairs_) addSections(f, g, own[facet_of_.at(f)], own[facet_of_.at(g)]);
+    for (const auto& [f, g] : pairs_)
+      pollStop(), addSections(f, g, own[facet_of_.at(f)], own[facet_of_.at(g)]);
   }
   void addSections(std::uint32_t f, std::uint32_t g, const std::vector<std::uint32_t>& of_f,
                    const std::vector<std::uint32_t>& of_g) {
@@ -388,11 +390,13 @@ class Arranger {
     const BoxTree tree_of_points(places), tree(boxes);
     std::vector<std::uint32_t> near;
     for (std::size_t i = 0; i < all.size(); ++i) {
+      pollStop();
       findOverlaps(tree_of_points, places, boxes[i], near);
       for (const std::uint32_t k : near)
         if (isNearSegment(segments_[all[i]], points_[points[k]])) has_changed |= put(all[i], points[k]);
     }
     for (std::size_t i = 3; i < all.size(); ++i) {
+      pollStop();
       findOverlaps(tree, boxes, boxes[i], near);
       for (const std::uint32_t k : near)
         if (k >= 3 && k < i) has_changed |= crossSegments(all[k], all[i]);
@@ -429,8 +433,10 @@ class Arranger {
 
   std::optional<Arrangement> triangulated() {
     Arrangement out;
-    for (std::uint32_t f = 0; f < mesh_.triangles.size(); ++f)
+    for (std::uint32_t f = 0; f < mesh_.triangles.size(); ++f) {
+      pollStop();
       if (!isGone(f) && !appendPieces(f, out)) return std::nullopt;
+    }
     out.mesh.vertices = std::move(points_);
     return out;
   }

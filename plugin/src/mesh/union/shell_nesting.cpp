@@ -8,6 +8,7 @@
 #include "mesh/union/facet_arrangement.h"
 #include "mesh/union/shell_pieces.h"
 #include "mesh/union/shell_union.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 namespace {
@@ -53,6 +54,7 @@ void ShellNesting::addCornersAndMiddles() {
 bool ShellNesting::liesWithin(std::uint32_t inner, std::uint32_t outer) {
   bool has_inside = false;
   for (const Vec3& p : points_[inner]) {
+    pollStop();
     const Place place = placeOf(p, outer);
     if (place == Place::Outside) return false;
     has_inside |= place == Place::Inside;

@@ -7,6 +7,7 @@
 #include "mesh/mesh_edges.h"
 #include "mesh/union/facet_arrangement.h"
 #include "vps/bounding_volume_hierarchy.h"
+#include "vps/stoppable.h"
 
 namespace vps {
 
@@ -33,7 +34,9 @@ std::vector<FacetPair> nearPairs(const Mesh& mesh, const std::vector<std::uint32
   const BoxTree tree(shells);
   std::vector<std::uint32_t> near;  // facets in the box of another shell
   std::vector<Box> boxes;
+  StridedPoll poll;
   for (std::uint32_t i = 0; i < shell_of.size(); ++i) {
+    poll();
     const Box box = boxOf(mesh, i, touch_m);
     if (tree.forEachOverlap(shells, box, [&](std::uint32_t shell) { return shell == shell_of[i]; })) continue;
     near.push_back(i);
@@ -41,12 +44,14 @@ std::vector<FacetPair> nearPairs(const Mesh& mesh, const std::vector<std::uint32
   }
   const BoxTree facets(boxes);
   std::vector<FacetPair> pairs;
-  for (std::uint32_t k = 0; k < near.size() && pairs.size() <= kMostPairs; ++k)
+  for (std::uint32_t k = 0; k < near.size() && pairs.size() <= kMostPairs; ++k) {
+    poll();
     facets.forEachOverlap(boxes, boxes[k], [&](std::uint32_t other) {
       const std::uint32_t f = near[k], g = near[other];
       if (f < g && shell_of[f] != shell_of[g] && mayTouch(mesh, f, g, touch_m)) pairs.push_back({f, g});
       return pairs.size() <= kMostPairs;
     });
+  }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

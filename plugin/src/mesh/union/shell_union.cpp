@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/union/shell_union.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include "mesh/union/facet_arrangement.h"
 #include "mesh/union/shell_pieces.h"
 #include "vps/bounding_volume_hierarchy.h"
+#include "vps/stoppable.h"
 #include "vps/winding_number.h"
 
 namespace vps {
@@ -67,9 +66,12 @@ class Shells {
   /// As isKeptBySeries(), by the sum over the triangles of all shells around p.
   [[nodiscard]] bool isKeptBySum(std::uint32_t f, const Vec3& p) const {
     double w = 0;
+    StridedPoll poll;
     for (const std::uint32_t shell : around(p))
-      for (const std::uint32_t i : triangles_[shell])
+      for (const std::uint32_t i : triangles_[shell]) {
+        poll();
         if (i != f && !isFlush(i, p)) w += solidAngleOf(i, p);
+      }
     return isKept(flushAt(f, p), w);
   }
   /// The number of triangles in the sum of isKeptBySum().
@@ -83,8 +85,12 @@ class Shells {
 
   [[nodiscard]] bool isInside(const Vec3& p) const {
     double w = 0;
+    StridedPoll poll;
     for (const std::uint32_t shell : around(p))
-      for (const std::uint32_t i : triangles_[shell]) w += solidAngleOf(i, p);
+      for (const std::uint32_t i : triangles_[shell]) {
+        poll();
+        w += solidAngleOf(i, p);
+      }
     return w > 0.5;
   }
   /// True if p is so near to a facet that rounding decides on which side it is.
@@ -194,10 +200,11 @@ bool agree(const Mesh& mesh, const Shells& shells) {
   const Shells united(mesh, all, 0);
   const Box box = bounds(mesh);
   std::array<char, kPoints> agrees{};
-  tbb::parallel_for(0, kPoints, [&](int i) {
+  onAllCores(kPoints, [&](std::size_t k) {
+    const int i = static_cast<int>(k);
     const Vec3 share(halton(i + 1, 2), halton(i + 1, 3), halton(i + 1, 5));
     const Vec3 p = box.min + share.cwiseProduct(box.size());
-    agrees[static_cast<std::size_t>(i)] = shells.isOnSurface(p) || united.isInside(p) == shells.isInside(p);
+    agrees[k] = shells.isOnSurface(p) || united.isInside(p) == shells.isInside(p);
   });
   return std::find(agrees.begin(), agrees.end(), 0) == agrees.end();
 }
@@ -246,7 +253,7 @@ std::optional<std::vector<char>> keptPatches(const Arrangement& cut, const std::
                                              const Shells& shells, std::int64_t& work_left) {
   constexpr char kOpen = 2;
   std::vector<char> is_kept(widest.size());
-  tbb::parallel_for(std::size_t{0}, widest.size(), [&](std::size_t patch) {
+  onAllCores(widest.size(), [&](std::size_t patch) {
     const auto kept = shells.isKeptBySeries(cut.source[widest[patch]], middleOf(cut.mesh, widest[patch]));
     is_kept[patch] = kept ? static_cast<char>(*kept) : kOpen;
   });
@@ -254,7 +261,7 @@ std::optional<std::vector<char>> keptPatches(const Arrangement& cut, const std::
     if (is_kept[patch] == kOpen)
       work_left -= 1 + shells.sizeOfSum(middleOf(cut.mesh, widest[patch])) / kAnglesInStep;
   if (work_left < 0) return std::nullopt;
-  tbb::parallel_for(std::size_t{0}, widest.size(), [&](std::size_t patch) {
+  onAllCores(widest.size(), [&](std::size_t patch) {
     if (is_kept[patch] == kOpen)
       is_kept[patch] = shells.isKeptBySum(cut.source[widest[patch]], middleOf(cut.mesh, widest[patch]));
   });

@@ -3,6 +3,7 @@
 // all cores by a library that is not known to be safe in threads.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -41,11 +42,39 @@ bool mayFork();
 /// so that the error appears as without copies. All results are made in this process where mayFork() is
 /// false, for one copy, and for one result.
 /// @param copies  0: as many as there are cores
+/// @param look    called in this process several times a second while the copies compute; may throw, which
+/// ends them
 ///
 /// Meant for a library that is not known to be safe in threads, within a process that may start no threads:
 /// the child that reads a file. The copies end with this process.
 std::vector<std::string> madeInCopies(const std::vector<std::size_t>& order,
                                       const std::function<std::string(std::size_t)>& make,
-                                      const std::function<void()>& done, std::size_t copies = 0);
+                                      const std::function<void()>& done, std::size_t copies = 0,
+                                      const std::function<void()>& look = {});
+
+/// The number of this process, which differs in a fork; 0 without fork().
+long processNumber();
+
+/// A number that this process and its later forks share.
+class SharedCounter {
+ public:
+  SharedCounter();
+  ~SharedCounter();
+  SharedCounter(const SharedCounter&) = delete;
+  SharedCounter& operator=(const SharedCounter&) = delete;
+
+  /// Adds to the number and returns its value before.
+  std::size_t add(std::size_t count);
+  [[nodiscard]] std::size_t value() const;
+  /// Whether forks share the number; false where memory is short, and without fork().
+  [[nodiscard]] bool isShared() const { return memory_ != nullptr; }
+
+ private:
+  using Counter = std::atomic<std::size_t>;
+  static_assert(Counter::is_always_lock_free);  // a counter with a lock would not work across processes
+  void* memory_ = nullptr;                      // of the process and its forks
+  Counter own_ = 0;                             // used without shared memory
+  Counter* counter_ = &own_;
+};
 
 }  // namespace vps::scenes::import

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Turns a reader's result into parts: metres, rigid poses, welded meshes, unique names, warnings.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <numeric>
-
-#include <tbb/parallel_for.h>
 
 #include "core/equal_meshes.h"
 #include "core/valid_text.h"
@@ -14,6 +13,7 @@
 #include "import/readers.h"
 #include "vps/errors.h"
 #include "vps/mesh.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/cad/colors.h"
 
 namespace vps::scenes::import {
@@ -118,6 +118,7 @@ void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
   std::vector<ImportedPart> kept, open;
   std::size_t open_edges = 0;
   for (ImportedPart& part : parts) {
+    pollStop();
     MeshReport report;
     weldedToClose(part.mesh, report);
     open_edges += report.open_edges;
@@ -212,7 +213,7 @@ FinishedMesh finished(const Mesh& mesh) {
 }
 
 /// Welds the meshes of all parts on all cores; equal meshes are welded only once.
-void weldAll(ImportedCad& cad) {
+void weldAll(ImportedCad& cad, StoppableWork& work) {
   EqualMeshes known;
   std::vector<std::size_t> own, source(cad.parts.size());
   for (std::size_t i = 0; i < cad.parts.size(); ++i) {
@@ -224,8 +225,11 @@ void weldAll(ImportedCad& cad) {
     own.push_back(i);
   }
   std::vector<FinishedMesh> welded(cad.parts.size());
-  tbb::parallel_for(std::size_t{0}, own.size(),
-                    [&](std::size_t k) { welded[own[k]] = finished(cad.parts[own[k]].mesh); });
+  std::atomic<std::size_t> done = 0;
+  onAllCores(own.size(), [&](std::size_t k) {
+    welded[own[k]] = finished(cad.parts[own[k]].mesh);
+    work.report("welding the meshes", static_cast<double>(++done) / static_cast<double>(own.size()));
+  });
   for (std::size_t i = 0; i < cad.parts.size(); ++i) {
     ImportedPart& part = cad.parts[i];
     const FinishedMesh& of = welded[source[i]];
@@ -270,7 +274,8 @@ void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback)
   }
 }
 
-void finish(RawCad raw, ImportedCad& cad) {
+void finish(RawCad raw, ImportedCad& cad, StoppableWork& work) {
+  work.report("welding the meshes", 0);
   cad.warnings = std::move(raw.warnings);
   for (const RawPart& part : raw.parts) {
     if (!part.mesh.triangles.empty()) cad.parts.push_back(inMetres(part, raw.unit_m));
@@ -289,7 +294,7 @@ void finish(RawCad raw, ImportedCad& cad) {
   }
   if (raw.open_shapes != Shapes::AreParts && cad.parts.size() > 1) joinShapes(cad.parts, raw.open_shapes);
   nameUniquely(cad.parts, stem(cad.file));
-  weldAll(cad);
+  weldAll(cad, work);
 }
 
 }  // namespace vps::scenes::import

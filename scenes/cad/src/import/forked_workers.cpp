@@ -42,29 +42,6 @@ using Results = std::vector<std::optional<std::string>>;
 
 #if defined(__unix__)
 
-/// The next place in the order, in memory that all copies share.
-class SharedCounter {
- public:
-  SharedCounter()
-      : memory_(::mmap(nullptr, sizeof(Counter), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
-    if (memory_ != MAP_FAILED) counter_ = new (memory_) Counter(0);
-  }
-  ~SharedCounter() {
-    if (counter_ != nullptr) ::munmap(memory_, sizeof(Counter));
-  }
-  SharedCounter(const SharedCounter&) = delete;
-  SharedCounter& operator=(const SharedCounter&) = delete;
-
-  [[nodiscard]] bool isThere() const { return counter_ != nullptr; }
-  std::size_t next() { return counter_->fetch_add(1); }
-
- private:
-  using Counter = std::atomic<std::size_t>;
-  static_assert(Counter::is_always_lock_free);  // a counter with a lock would not work across processes
-  void* memory_;
-  Counter* counter_ = nullptr;
-};
-
 struct Header {
   std::uint64_t index = 0, size = 0;
 };
@@ -88,7 +65,7 @@ bool writeAll(int to, const void* data, std::size_t size) {
 #endif
   if (::getppid() != parent) ::_exit(1);  // the parent ended before prctl()
   try {
-    for (std::size_t k = counter.next(); k < order.size(); k = counter.next()) {
+    for (std::size_t k = counter.add(1); k < order.size(); k = counter.add(1)) {
       const std::string result = make(order[k]);
       const Header header{order[k], result.size()};
       if (!writeAll(to, &header, sizeof header) || !writeAll(to, result.data(), result.size())) break;
@@ -167,13 +144,15 @@ class Copies {
     copies_.push_back({id, ends[0], {}});
   }
 
-  void collect(Results& results, const std::function<void()>& done) {
+  void collect(Results& results, const std::function<void()>& done, const std::function<void()>& look) {
+    constexpr int kLook_ms = 200;
     for (;;) {
       std::vector<pollfd> waiting;
       for (const Copy& copy : copies_)
         if (copy.from >= 0) waiting.push_back({copy.from, POLLIN, 0});
       if (waiting.empty()) return;
-      if (::poll(waiting.data(), waiting.size(), -1) < 0 && errno != EINTR) return;
+      if (::poll(waiting.data(), waiting.size(), look ? kLook_ms : -1) < 0 && errno != EINTR) return;
+      if (look) look();
       for (const pollfd& one : waiting) {
         if (one.revents == 0) continue;
         Copy& copy = *std::ranges::find(copies_, one.fd, &Copy::from);
@@ -195,6 +174,38 @@ class Copies {
 
 }  // namespace
 
+#if defined(__unix__)
+SharedCounter::SharedCounter()
+    : memory_(::mmap(nullptr, sizeof(Counter), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
+  if (memory_ == MAP_FAILED)
+    memory_ = nullptr;
+  else
+    counter_ = new (memory_) Counter(0);
+}
+SharedCounter::~SharedCounter() {
+  if (memory_ != nullptr) ::munmap(memory_, sizeof(Counter));
+}
+#else
+SharedCounter::SharedCounter() = default;
+SharedCounter::~SharedCounter() = default;
+#endif
+
+long processNumber() {
+#if defined(__unix__)
+  return ::getpid();
+#else
+  return 0;
+#endif
+}
+
+std::size_t SharedCounter::add(std::size_t count) {
+  return counter_->fetch_add(count);
+}
+
+std::size_t SharedCounter::value() const {
+  return counter_->load();
+}
+
 bool mayFork() {
 #if !defined(__unix__)
   return false;
@@ -208,15 +219,16 @@ bool mayFork() {
 }
 
 std::vector<std::string> madeInCopies(const std::vector<std::size_t>& order, const Make& make,
-                                      const std::function<void()>& done, std::size_t copies) {
+                                      const std::function<void()>& done, std::size_t copies,
+                                      const std::function<void()>& look) {
   Results results(order.size());
 #if defined(__unix__)
   const std::size_t count =
       std::min<std::size_t>(copies > 0 ? copies : std::thread::hardware_concurrency(), order.size());
-  if (SharedCounter counter; count > 1 && mayFork() && counter.isThere()) {
+  if (SharedCounter counter; count > 1 && mayFork() && counter.isShared()) {
     Copies running;
     for (std::size_t i = 0; i < count; ++i) running.start(counter, order, make);
-    running.collect(results, done);
+    running.collect(results, done, look);
   }
 #endif
   std::vector<std::string> out(order.size());

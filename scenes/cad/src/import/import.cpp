@@ -12,6 +12,8 @@
 #include "import/part_bytes.h"
 #include "import/readers.h"
 #include "vps/errors.h"
+#include "vps/stoppable.h"
+#include "vps_scenes/cad/time_limit.h"
 
 namespace vps::scenes {
 namespace {
@@ -38,8 +40,9 @@ void nameTreeApart(ImportedCad& one, const ImportedCad& others) {
 
 /// Reads a file by its format's reader; the parts keep the file's axes.
 void readAnew(const std::string& file, const FileFormat& format, const ImportSettings& settings,
-              const Progress& progress, ImportedCad& cad) {
+              StoppableWork& work, ImportedCad& cad) {
   const import::FormatRow& row = format.row();
+  const Progress progress = [&work](std::string_view doing, double share) { work.report(doing, share); };
   const auto read = [&](const Progress& inner) { return row.read(file, format, settings, inner); };
   std::optional<import::RawCad> raw;
   if (row.read_here != nullptr) raw = row.read_here(file, settings);
@@ -47,7 +50,7 @@ void readAnew(const std::string& file, const FileFormat& format, const ImportSet
   cad.states_unit = raw->states_unit;
   cad.missing = raw->missing;
   if (settings.part_per == PartPer::Object) raw->open_shapes = import::Shapes::AreParts;
-  import::finish(std::move(*raw), cad);
+  import::finish(std::move(*raw), cad, work);
   for (ImportedPart& part : cad.parts) {
     if (row.has_exact_faces)
       part.deflection_m = std::max(part.deflection_m.value_or(0), settings.deflection_m);
@@ -82,28 +85,37 @@ struct CadInFileAxes {
   bool is_up_open = false;  ///< see FormatRow
 };
 
-CadInFileAxes withFileAxes(const std::string& file, ImportSettings settings, const Progress& progress) {
+/// Checks what shows at once: the settings, and the file's existence, size, kind, end and unit.
+FileFormat readable(const std::string& file, const ImportSettings& settings) {
   if (settings.unit_m && !(*settings.unit_m > 0))
     throw LoadError(file, "", "is given a unit that is not a positive length; give metres per file unit");
   if (!(settings.deflection_m > 0) || !(settings.angle_rad > 0)) {
     throw LoadError(file, "", "needs a deflection and an angle of more than 0");
   }
+  FileFormat format = import::detectFormat(file);
+  if (format.row().has_no_unit) static_cast<void>(import::unitOf(file, format, settings));
+  return format;
+}
+
+CadInFileAxes withFileAxes(const std::string& file, ImportSettings settings, const Progress& progress) {
+  const FileFormat format = readable(file, settings);
   if (settings.most_memory_bytes == 0)
     settings.most_memory_bytes = static_cast<std::uint64_t>(0.5 * machineMemoryBytes());
-  const FileFormat format = import::detectFormat(file);
   ImportedCad cad;
   cad.file = file;
   cad.format = format.name;
-  if (progress) progress("reading " + import::stem(file), 0);
+  const std::string doing = "reading " + import::stem(file);
+  StoppableWork work(progress, doing);
+  work.report(doing, 0);
   const std::string made_from = settings.cache != nullptr ? import::madeFrom(file, format, settings) : "";
   std::optional<std::string> kept;
   if (!made_from.empty()) kept = settings.cache->find(made_from);
   if (!kept || !import::readKeptBytes(*kept, cad)) {
-    readAnew(file, format, settings, progress, cad);
+    readAnew(file, format, settings, work, cad);
     if (!made_from.empty()) settings.cache->keep(made_from, import::keptBytes(cad));
   }
   if (settings.part_per == PartPer::File) cad.parts = {wholeFile(cad)};
-  if (progress) progress("reading " + import::stem(file), 1);
+  work.report(doing, 1);
   return {std::move(cad), format.row().is_up_open};
 }
 
@@ -115,7 +127,7 @@ void setUp(ImportedCad& cad, bool is_open, const ImportSettings& settings) {
 }  // namespace
 
 ImportedCad importCad(const std::string& file, const ImportSettings& settings, const Progress& progress) {
-  CadInFileAxes one = withFileAxes(file, settings, progress);
+  CadInFileAxes one = withFileAxes(file, settings, withTimeLimit(progress, {settings.most_s}, file));
   setUp(one.cad, one.is_up_open, settings);
   return std::move(one.cad);
 }
@@ -126,8 +138,12 @@ ImportedCad importCad(const std::vector<std::string>& files, const ImportSetting
   all.states_unit = !files.empty();
   bool is_up_open = true;
   std::vector<std::size_t> ends;
+  // A file that is missing, empty or of no known kind is told before the others are read, which may take
+  // minutes.
+  for (const std::string& file : files) static_cast<void>(readable(file, settings));
+  const TimeLimit limit{settings.most_s};
   for (const std::string& file : files) {
-    auto [one, is_open] = withFileAxes(file, settings, progress);
+    auto [one, is_open] = withFileAxes(file, settings, withTimeLimit(progress, limit, file));
     if (all.file.empty()) all.file = file;
     is_up_open = is_up_open && is_open;
     all.states_unit = all.states_unit && one.states_unit;

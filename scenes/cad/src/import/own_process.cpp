@@ -36,6 +36,8 @@ RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings
 #include "import/child_processes.h"
 #include "import/part_bytes.h"
 #include "vps/errors.h"
+#include "vps/stoppable.h"
+#include "vps_scenes/cad/time_limit.h"
 
 namespace vps::scenes::import {
 namespace {
@@ -95,6 +97,7 @@ void prepareToCrash() {
 [[noreturn]] void runChild(Stream stream, const std::string& file, const Progress& progress,
                            const std::function<RawCad(const Progress&)>& read) noexcept {
   prepareToCrash();
+  const WorkOnThread none(nullptr);  // the callback of the parent's work is for the parent alone
   Writer out(std::move(stream));
   const Progress send = [&](std::string_view doing, double share) {
     auto message = Message::Progressed;
@@ -198,7 +201,11 @@ class Child {
 class Watch {
  public:
   Watch(const Child& child, const std::string& file, const ImportSettings& limits, const Progress& progress)
-      : child_(child), file_(file), limits_(limits), progress_(progress), doing_("reading " + stem(file)) {}
+      : child_(child),
+        file_(file),
+        limits_(limits),
+        progress_(withTimeLimit(progress, {limits.most_s}, file)),
+        doing_("reading " + stem(file)) {}
 
   void said(const std::string& doing, double share) {
     doing_ = doing;
@@ -211,9 +218,6 @@ class Watch {
         " (" + doing_ +
         "); export fewer parts into one file, or read STEP and IGES with a greater deflection";
     const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - begun_).count();
-    if (limits_.most_s > 0 && seconds > limits_.most_s)
-      throw LoadError(file_, "", "took more than " + number(limits_.most_s) + " s to read" + remedy);
     if (limits_.most_memory_bytes == 0 || now < next_memory_) return;
     next_memory_ = now + std::chrono::milliseconds(kLook_ms);
     if (child_.memory_bytes() > limits_.most_memory_bytes)
@@ -231,10 +235,10 @@ class Watch {
   const Child& child_;
   const std::string& file_;
   const ImportSettings& limits_;
-  const Progress& progress_;
+  const Progress progress_;
   std::string doing_;
   double share_ = 0;
-  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now(), next_memory_ = begun_;
+  std::chrono::steady_clock::time_point next_memory_ = std::chrono::steady_clock::now();
 };
 
 class Reader {

@@ -11,6 +11,7 @@
 #include "import/formats.h"
 #include "vps/errors.h"
 #include "vps/mesh.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/cad/import.h"
 
 namespace vps::scenes::import {
@@ -90,7 +91,8 @@ inline std::string_view withoutByteOrderMark(std::string_view text) {
 
 /// Converts raw parts to metres and rigid poses, welds, joins shapes to parts, makes names unique, adds
 /// warnings.
-void finish(RawCad raw, ImportedCad& cad);
+/// @param work  receives the progress
+void finish(RawCad raw, ImportedCad& cad, StoppableWork& work);
 
 /// Renames parts so that no name is repeated; a part without a name gets `fallback`.
 void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reads STEP and IGES with names, tree, poses and colours (Open CASCADE's XDE), and BREP.
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
+#include <set>
 #include <sstream>
 
 #include <BRepGProp.hxx>
@@ -35,6 +37,7 @@
 #include "import/part_names.h"
 #include "import/readers.h"
 #include "occt/file_faults.h"
+#include "occt/occt_progress.h"
 #include "occt/tessellate_all.h"
 #include "vps/errors.h"
 
@@ -100,6 +103,7 @@ class Tree {
         progress_(progress),
         cad_(cad) {
     shapes_->GetFreeShapes(roots_);
+    for (const TDF_Label& root : roots_) countProducts(root);
     for (const TDF_Label& root : roots_) collect(root, nameOf(root));
   }
 
@@ -140,6 +144,14 @@ class Tree {
     return XCAFDoc_ShapeTool::GetReferredShape(label, target) ? target : label;
   }
 
+  void countProducts(const TDF_Label& label) {
+    const TDF_Label product = referred(label);
+    if (XCAFDoc_ShapeTool::IsAssembly(product))
+      forComponents(product, [&](const TDF_Label& component) { countProducts(component); });
+    else
+      product_entries_.insert(entryOf(product));
+  }
+
   /// Collects the pieces of each product below a label; `name` is for the progress.
   void collect(const TDF_Label& label, std::string name) {
     const TDF_Label product = referred(label);
@@ -151,8 +163,13 @@ class Tree {
     }
     const auto [it, is_new] = first_shape_.try_emplace(entryOf(product), all_shapes_.size());
     if (!is_new) return;
-    if (progress_) progress_("reading the faces of " + name, 0);
-    for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product)))
+    const auto tell = [&](double share) {
+      if (progress_)
+        progress_("reading the faces of " + name, (static_cast<double>(first_shape_.size() - 1) + share) /
+                                                      static_cast<double>(product_entries_.size()));
+    };
+    tell(0);
+    for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product), tell))
       all_shapes_.push_back(shape);
     shape_end_[it->first] = all_shapes_.size();
   }
@@ -313,6 +330,7 @@ class Tree {
   std::map<std::string, std::vector<Piece>> products_;
   UniqueNames instances_;
   std::vector<TopoDS_Shape> all_shapes_;
+  std::set<std::string> product_entries_;                       // entries of all products, for the progress
   std::map<std::string, std::size_t> first_shape_, shape_end_;  // ranges of products in all_shapes_
   TessellatedShapes tessellated_;
 };
@@ -355,9 +373,28 @@ void readUnit(const LengthUnits& units, const ImportSettings& settings, RawCad& 
         "states no unit of length: millimetres are assumed; set unit or --units for another unit");
 }
 
+/// The stages of reading STEP and IGES, as shares of the whole that they take (measured roughly).
+struct Stage {
+  const char* doing;
+  double from, to;
+};
+constexpr Stage kText{"reading the file", 0, 0.1}, kTransfer{"making the faces", 0.1, 0.4},
+    kPieces{"", 0.4, 0.5}, kMeshing{"", 0.5, 1};
+
+/// The progress of a stage; `progress` is kept by reference. A stage without a name keeps the names of its
+/// work.
+Progress within(const Progress& progress, const Stage& stage) {
+  if (!progress) return {};
+  return [&progress, stage](std::string_view doing, double share) {
+    progress(*stage.doing != 0 ? stage.doing : doing, stage.from + (stage.to - stage.from) * share);
+  };
+}
+
 template <class Reader>
 void transfer(Reader& reader, const std::string& file, const FileFormat& format,
-              const Handle(TDocStd_Document) & document, const ImportSettings& settings, RawCad& cad) {
+              const Handle(TDocStd_Document) & document, const ImportSettings& settings,
+              const Progress& progress, RawCad& cad) {
+  if (progress) progress(kText.doing, kText.from);
   reader.SetNameMode(true);
   reader.SetColorMode(true);
   if (readText(basic(reader), file, format) != IFSelect_RetDone)
@@ -371,7 +408,14 @@ void transfer(Reader& reader, const std::string& file, const FileFormat& format,
   if (!units.fault.empty()) throw unreadable(file, format, units.fault);
   readUnit(units, settings, cad);
   Handle(TDocStd_Document) target = document;
-  if (!reader.Transfer(target)) throw unreadable(file, format, "no shape could be made from it");
+  const Progress tell = within(progress, kTransfer);
+  if (tell) tell("", 0);
+  const Handle(OcctProgress) stages = new OcctProgress([&](double share) {
+    if (tell) tell("", share);
+  });
+  const bool is_transferred = reader.Transfer(target, stages->Start());
+  stages->rethrow();
+  if (!is_transferred) throw unreadable(file, format, "no shape could be made from it");
   const LostShapes lost = lostShapes(basic(reader));
   if (!lost.unplaced.empty()) throw unreadable(file, format, lost.unplaced);
   if (!lost.left_out.empty()) cad.warnOfMissing(lost.left_out);
@@ -381,6 +425,7 @@ void readBrep(const std::string& file, const FileFormat& format, const ImportSet
               const Progress& progress, RawCad& cad) {
   cad.unit_m = unitOf(file, format, settings);
   TopoDS_Shape shape;
+  if (progress) progress(kText.doing, 0);
   if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull())
     throw unreadable(file, format, "its syntax is wrong");
   const TessellatedShapes found = tessellateAll(pieces(shape), settings, 1 / cad.unit_m, progress);
@@ -397,18 +442,18 @@ void readBrep(const std::string& file, const FileFormat& format, const ImportSet
 
 /// Transfers a STEP or IGES file into the document, in millimetres.
 void readDocument(const std::string& file, const FileFormat& format, const ImportSettings& settings,
-                  const Handle(TDocStd_Document) & document, RawCad& cad) {
+                  const Handle(TDocStd_Document) & document, const Progress& progress, RawCad& cad) {
   cad.unit_m = 1e-3;
   if (format.id == CadFormat::Step) {
     STEPCAFControl_Controller::Init();  // defines the parameter that is set below
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     STEPCAFControl_Reader reader;
-    transfer(reader, file, format, document, settings, cad);
+    transfer(reader, file, format, document, settings, progress, cad);
   } else {
     IGESControl_Controller::Init();
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     IGESCAFControl_Reader reader;
-    transfer(reader, file, format, document, settings, cad);
+    transfer(reader, file, format, document, settings, progress, cad);
   }
 }
 
@@ -419,7 +464,16 @@ std::string occtVersion() {
 }
 
 RawCad readOcct(const std::string& file, const FileFormat& format, const ImportSettings& settings,
-                const Progress& progress) {
+                const Progress& tell) {
+  std::exception_ptr stop;  // an exception of the callback, which is no fault of the file
+  const Progress progress = !tell ? Progress() : [&](std::string_view doing, double share) {
+    try {
+      tell(doing, share);
+    } catch (...) {
+      stop = std::current_exception();
+      throw;
+    }
+  };
   static std::mutex one_at_a_time;  // Open CASCADE's settings and messages are global
   const std::lock_guard lock(one_at_a_time);
   const Quiet quiet;
@@ -430,15 +484,17 @@ RawCad readOcct(const std::string& file, const FileFormat& format, const ImportS
       return cad;
     }
     Document document;
-    readDocument(file, format, settings, document.get(), cad);
-    Tree tree(document.get(), settings, progress, cad);
-    tree.addParts(tessellateAll(tree.shapes(), settings, 1 / cad.unit_m, progress));
+    readDocument(file, format, settings, document.get(), progress, cad);
+    const Progress of_pieces = within(progress, kPieces);
+    Tree tree(document.get(), settings, of_pieces, cad);
+    tree.addParts(tessellateAll(tree.shapes(), settings, 1 / cad.unit_m, within(progress, kMeshing)));
     return cad;
   } catch (const LoadError&) {
     throw;
   } catch (const Standard_Failure& e) {
     throw unreadable(file, format, e.GetMessageString());
   } catch (const std::exception& e) {
+    if (stop) std::rethrow_exception(stop);
     throw unreadable(file, format, e.what());
   }
 }

@@ -25,6 +25,7 @@
 
 #include "import/child_processes.h"
 #include "import/part_bytes.h"
+#include "occt/occt_progress.h"
 
 namespace vps::scenes::import {
 
@@ -169,13 +170,19 @@ class Different {
   std::map<std::vector<int>, std::vector<std::size_t>> with_kinds_;
 };
 
-/// Shapes with many edges first, since they take longest.
-std::vector<std::size_t> longestFirst(const std::vector<TopoDS_Shape>& shapes) {
+/// The number of edges of each shape, as a measure of its work.
+std::vector<int> edgesOf(const std::vector<TopoDS_Shape>& shapes) {
   std::vector<int> edges;
   for (const TopoDS_Shape& shape : shapes) {
     edges.push_back(0);
     for (TopExp_Explorer it(shape, TopAbs_EDGE); it.More(); it.Next()) ++edges.back();
   }
+  return edges;
+}
+
+/// Shapes with many edges first, since they take longest.
+std::vector<std::size_t> longestFirst(const std::vector<TopoDS_Shape>& shapes,
+                                      const std::vector<int>& edges) {
   std::vector<std::size_t> order(shapes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return edges[a] > edges[b]; });
@@ -184,7 +191,7 @@ std::vector<std::size_t> longestFirst(const std::vector<TopoDS_Shape>& shapes) {
 
 }  // namespace
 
-std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape) {
+std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape, const std::function<void(double)>& tell) {
   std::vector<TopoDS_Shape> found;
   for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) found.push_back(it.Current());
   // Tolerance of sewing in mm: 1 um, which is enough for most IGES edges, and less for a tiny part.
@@ -196,7 +203,9 @@ std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape) {
   for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SOLID); it.More(); it.Next(), ++loose)
     sewing.Add(it.Current());
   if (loose > 0) {
-    sewing.Perform();
+    const Handle(OcctProgress) progress = new OcctProgress(tell);
+    sewing.Perform(progress->Start());
+    progress->rethrow();
     if (!sewing.SewedShape().IsNull()) found.push_back(sewing.SewedShape());
   }
   return found;
@@ -209,21 +218,33 @@ TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const I
   TessellatedShapes out;
   for (const TopoDS_Shape& shape : shapes) out.shapes.push_back(different.findOrAdd(shape));
   const std::vector<TopoDS_Shape>& own = different.shapes();
-  std::size_t count = 0;
-  const auto oneMore = [&] {
-    ++count;
-    if (progress) progress("meshing", double(count) / double(own.size()));
+  // Copies of this process add to the counter as well, but only this process calls `progress`.
+  constexpr double kPerEdge = 1024;
+  const std::vector<int> edges = edgesOf(own);
+  const double all = kPerEdge * std::accumulate(edges.begin(), edges.end(), 1.0);
+  SharedCounter done;
+  const auto look = [&] {
+    if (progress) progress("meshing", std::min(1.0, static_cast<double>(done.value()) / all));
   };
-  const auto make = [&](std::size_t i) { return tessellate(own[i], settings, units_per_m); };
+  const long here = processNumber();
+  const auto make = [&](std::size_t i) {
+    std::size_t told = 0;
+    const auto tell = [&](double share) {
+      const auto now = static_cast<std::size_t>(share * kPerEdge * edges[i]);
+      done.add(now - std::min(now, told));
+      told = std::max(now, told);
+      if (processNumber() == here) look();
+    };
+    Tessellation made = tessellate(own[i], settings, units_per_m, tell);
+    tell(1);
+    return made;
+  };
   if (!settings.in_own_process) {  // Open CASCADE then uses threads itself
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      out.tessellations.push_back(make(i));
-      oneMore();
-    }
+    for (std::size_t i = 0; i < own.size(); ++i) out.tessellations.push_back(make(i));
     return out;
   }
   const auto makeBytes = [&](std::size_t i) { return bytesOf(make(i)); };
-  for (const std::string& bytes : madeInCopies(longestFirst(own), makeBytes, oneMore))
+  for (const std::string& bytes : madeInCopies(longestFirst(own, edges), makeBytes, {}, 0, look))
     out.tessellations.push_back(tessellationFrom(bytes));
   return out;
 }

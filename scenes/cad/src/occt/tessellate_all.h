@@ -3,6 +3,7 @@
 // cores.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -14,7 +15,8 @@
 namespace vps::scenes::import {
 
 /// The rigid pieces of a shape: each solid, and the faces outside of solids, sewn together where they meet.
-std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape);
+/// @param tell  called with the share done while faces are sewn; may throw
+std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape, const std::function<void(double)>& tell = {});
 
 struct TessellatedShape {
   std::size_t number = 0;                              ///< index of its tessellation
@@ -29,7 +31,7 @@ struct TessellatedShapes {
 
 /// Calls tessellate() for each shape. A shape that is a rigid copy of an earlier one within a nanometre gets
 /// the earlier shape's triangles, so that later code finds equal parts equal.
-/// @param progress  called as "meshing" after each different shape
+/// @param progress  called as "meshing", with the share done by edges, as faces and shapes are finished
 TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const ImportSettings& settings,
                                 double units_per_m, const Progress& progress);
 

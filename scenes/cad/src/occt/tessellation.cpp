@@ -26,6 +26,8 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
 
+#include "occt/occt_progress.h"
+
 namespace vps::scenes::import {
 
 namespace {
@@ -120,8 +122,28 @@ double deviationOf(const TopoDS_Face& face, double enough) {
   return worst;
 }
 
+using Tell = std::function<void(double)>;
+
+/// Progress over tries of which the number is not known.
+class Tries {
+ public:
+  explicit Tries(const Tell& tell) : tell_(tell) {}
+
+  /// The callback of the next piece of work.
+  Tell next() {
+    from_ = to_;
+    to_ = from_ + 0.5 * (1 - from_);
+    if (!tell_) return {};
+    return [this, from = from_, to = to_](double share) { tell_(from + (to - from) * share); };
+  }
+
+ private:
+  const Tell& tell_;
+  double from_ = 0, to_ = 0;
+};
+
 void triangulate(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m, Inner inner,
-                 IMeshTools_MeshAlgoType algorithm = IMeshTools_MeshAlgoType_DEFAULT) {
+                 const Tell& tell, IMeshTools_MeshAlgoType algorithm = IMeshTools_MeshAlgoType_DEFAULT) {
   const double finer = inner == Inner::Finer ? 0.25 : 1;
   IMeshTools_Parameters parameters;
   parameters.Deflection = finer * settings.deflection_m * units_per_m;
@@ -131,7 +153,9 @@ void triangulate(const TopoDS_Shape& shape, const ImportSettings& settings, doub
   parameters.MeshAlgo = algorithm;
   // A BREP file can hold triangles, which may no longer fit the shape.
   BRepTools::Clean(shape);
-  BRepMesh_IncrementalMesh(shape, parameters);
+  const Handle(OcctProgress) progress = new OcctProgress(tell);
+  BRepMesh_IncrementalMesh(shape, parameters, progress->Start());
+  progress->rethrow();
 }
 
 std::size_t triangleCount(const TopoDS_Shape& shape) {
@@ -159,7 +183,7 @@ IMeshTools_MeshAlgoType firstAlgorithm(const TopoDS_Shape& shape) {
 /// The least deflection, the requested one times a power of four, with which the shape has no more triangles
 /// than allowed. Tries the coarsest first, so that too many triangles are never made: a quarter of the
 /// deflection doubles the triangles of a cylinder, and makes four times as many on a ball.
-Affordable affordable(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m) {
+Affordable affordable(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m, Tries& tries) {
   constexpr double kStep = 4, kRounding = 1.01;
   const double asked_m = settings.deflection_m;
   if (settings.most_triangles == 0 || settings.coarsest_m < kStep * asked_m) return {asked_m};
@@ -168,7 +192,7 @@ Affordable affordable(const TopoDS_Shape& shape, ImportSettings settings, double
   const IMeshTools_MeshAlgoType algorithm = firstAlgorithm(shape);
   const auto countAt = [&](double d_m) {
     settings.deflection_m = d_m;
-    triangulate(shape, settings, units_per_m, Inner::None, algorithm);
+    triangulate(shape, settings, units_per_m, Inner::None, tries.next(), algorithm);
     return triangleCount(shape);
   };
   const auto most = static_cast<double>(settings.most_triangles);
@@ -246,13 +270,16 @@ TopoDS_Shape withFacesHealed(const TopoDS_Shape& shape, const Tessellation& tess
 
 }  // namespace
 
-Tessellation compared(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m) {
+Tessellation compared(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m,
+                      const std::function<void(double)>& tell) {
   constexpr double kMostWeld_m = 1e-6;
   Tessellation out;
   out.deflection_m = settings.deflection_m;
   const double enough = kTimes * settings.deflection_m * units_per_m;
-  double deviation = 0;
+  double deviation = 0, faces = 0;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); tell && it.More(); it.Next()) ++faces;
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    if (tell) tell(static_cast<double>(out.faces.size()) / faces);
     const TopoDS_Face face = TopoDS::Face(it.Current());
     const std::size_t before = out.mesh.triangles.size(), first = out.mesh.vertices.size();
     appendFace(face, out.mesh);
@@ -288,21 +315,23 @@ bool Tessellation::isTrusted() const {
   return faults() == 0 && deviation_m <= kTimes * deflection_m;
 }
 
-Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m) {
-  const Affordable found = affordable(shape, settings, units_per_m);
+Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m,
+                        const std::function<void(double)>& tell) {
+  Tries tries(tell);
+  const Affordable found = affordable(shape, settings, units_per_m, tries);
   settings.deflection_m = found.deflection_m;
   const IMeshTools_MeshAlgoType algorithm = firstAlgorithm(shape);
-  if (!found.is_triangulated) triangulate(shape, settings, units_per_m, Inner::None, algorithm);
-  Tessellation best = compared(shape, settings, units_per_m);
+  if (!found.is_triangulated) triangulate(shape, settings, units_per_m, Inner::None, tries.next(), algorithm);
+  Tessellation best = compared(shape, settings, units_per_m, tries.next());
   if (algorithm != IMeshTools_MeshAlgoType_DEFAULT) {
     if (best.isTrusted() && best.folded == 0) return best;
-    triangulate(shape, settings, units_per_m, Inner::None);
-    best = compared(shape, settings, units_per_m);
+    triangulate(shape, settings, units_per_m, Inner::None, tries.next());
+    best = compared(shape, settings, units_per_m, tries.next());
   }
   const auto tryThat = [&](const TopoDS_Shape& other, Inner inner) {
     if (best.isTrusted()) return;
-    triangulate(other, settings, units_per_m, inner);
-    Tessellation next = compared(other, settings, units_per_m);
+    triangulate(other, settings, units_per_m, inner, tries.next());
+    Tessellation next = compared(other, settings, units_per_m, tries.next());
     // Finer triangles without fewer faults only make the search for contacts slower.
     const bool is_better = next.faults() < best.faults() ||
                            (next.faults() == best.faults() && next.deviation_m < 0.5 * best.deviation_m);

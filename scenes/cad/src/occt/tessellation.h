@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,14 +47,20 @@ struct Tessellation {
 /// Takes the triangles that the shape has and compares them with its faces: distance at the triangles'
 /// centres, area, bounding box. For a closed shape (a solid, or loose faces that were sewn together) also
 /// checks that the mesh is closed, and its volume.
-Tessellation compared(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m);
+/// @param tell  called with the share of the faces that are compared; may throw
+Tessellation compared(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m,
+                      const std::function<void(double)>& tell = {});
 
 /// Triangulates a shape and compares the triangles with its faces, since Open CASCADE can place a face's
 /// triangles elsewhere without an error: of 17 solids of one public motor 6 had triangles up to 24 mm off a
 /// cylinder, and all were closed. While the result is not trusted, tries points inside faces, then finer
 /// triangles, then healed faulty faces, then a healed shape, and returns the best result. Cost in addition to
 /// the triangulation: a point of the surface for each triangle, and the volume of a solid.
-Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m);
+/// @param tell  called from face to face with the share done, which never falls; may throw to end the work.
+/// The number
+///              of tries is not known, so that each try takes half of the share that is left.
+Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m,
+                        const std::function<void(double)>& tell = {});
 
 /// A warning about a part that is coarser or less accurate than requested; empty for any other part.
 std::string inWords(const Tessellation& tessellation, const ImportSettings& settings);

@@ -16,6 +16,7 @@
 #include "rules/asked_pairs.h"
 #include "surface/placed_surface.h"
 #include "vps/mesh_repair.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/fits/rules.h"
 
 namespace vps::scenes {
@@ -201,6 +202,7 @@ CheckedPart describePart(const PlacedSurface& part) {
 
 CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>& parts,
                           const CheckSettings& settings, const Progress& progress) {
+  const StoppableWork stoppable(progress, "preparing the parts");
   const double begun_s = wallSeconds();
   const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
   const double prepare_s = wallSeconds() - begun_s;
@@ -211,6 +213,7 @@ CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>&
 
 CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface>& placed,
                         const CheckSettings& settings, const Progress& progress) {
+  const StoppableWork stoppable(progress, "measuring pairs");
   CheckResult result;
   result.assembly = name;
   result.near_m = settings.near_m;

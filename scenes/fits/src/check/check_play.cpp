@@ -9,10 +9,9 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include <tbb/parallel_for.h>
-
 #include "motion/play.h"
 #include "surface/placed_surface.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -84,7 +83,7 @@ bool hasFlushFaces(const PartTask& task) {
 void measurePlay(const PlacedSurface& part, const PartTask& task, double leave_m, CheckedPart& out) {
   Play play;
   std::array<std::uint8_t, kAxes> is_given_up = {};
-  tbb::parallel_for(std::size_t{0}, kTasks, [&](std::size_t axis) {
+  onAllCores(kTasks, [&](std::size_t axis) {
     if (axis == kAxes) {
       out.ways_out_W = waysOut(*task.search, part, task.frame, task.fits, leave_m);
       return;

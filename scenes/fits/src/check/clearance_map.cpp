@@ -7,6 +7,7 @@
 
 #include "rules/asked_pairs.h"
 #include "surface/placed_surface.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -76,10 +77,11 @@ ClearanceMap mapOf(const PlacedSurface& part, const std::vector<const PlacedSurf
   std::vector<Box> others_W;
   for (const PlacedSurface* other : others) others_W.push_back(grown(other->box_W, near_m));
   const double longest_m = kFine * part.box_W.size().norm();
-  while (map.mesh_W.vertices.size() < kMostVertices && divideOnce(map.mesh_W, longest_m, others_W)) {
-  }
+  while (map.mesh_W.vertices.size() < kMostVertices && divideOnce(map.mesh_W, longest_m, others_W))
+    pollStop();
   map.distance_m.assign(map.mesh_W.vertices.size(), near_m);
   for (std::size_t i = 0; i < map.distance_m.size(); ++i) {
+    pollStop();
     const Vec3& p_W = map.mesh_W.vertices[i];
     double& least_m = map.distance_m[i];
     for (const PlacedSurface* other : others) {

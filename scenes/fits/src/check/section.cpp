@@ -7,6 +7,7 @@
 
 #include "surface/placed_surface.h"
 #include "vps/mesh_distance.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -140,6 +141,7 @@ std::vector<CheckedSection> checkSections(const std::vector<PlacedSurface>& part
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return result.fits[i].diametral_clearance_m; });
   for (const std::size_t i : order) {
     if (sections.size() == kMost) break;
+    pollStop();
     sections.push_back(sectionOf(result.fits[i]));
     sections.back().of = i;
     concerned.push_back({&named(parts, result.fits[i].shaft), &named(parts, result.fits[i].bore)});

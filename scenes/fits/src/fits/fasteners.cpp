@@ -12,6 +12,7 @@
 #include "fits/fastener_shape.h"
 #include "fits/iso_sizes.h"
 #include "surface/placed_surface.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -308,6 +309,7 @@ std::vector<std::optional<FastenerShape>> fastenerShapes(const std::vector<Place
 }
 
 std::vector<Fastener> findFasteners(const std::vector<DrawnPart>& parts, const Progress& progress) {
+  const StoppableWork stoppable(progress, "preparing the parts");
   const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
   const std::vector<std::optional<FastenerShape>> shapes = fastenerShapes(placed, progress);
   std::vector<Fastener> out;

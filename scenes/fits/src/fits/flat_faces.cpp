@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fits/faces.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,7 @@ void joinPieces(const PartSurface& surface, double tolerance_m, std::vector<Flat
   for (std::size_t i = 0; i < count; ++i) {
     if (is_joined[i]) continue;
     FlatFace& face = faces[i];
+    pollStop();
     std::vector<std::size_t> in_plane, members = {i};
     for (std::size_t k = i + 1; k < count; ++k)
       if (!is_joined[k] && faces[k].n.dot(face.n) > 1 - kFlatFacesParallel &&
@@ -89,7 +91,9 @@ std::vector<FlatFace> flatFaces(const PartSurface& surface, const std::vector<Ro
   std::ranges::sort(seeds);
 
   std::vector<FlatFace> faces;
+  StridedPoll poll;
   for (const auto& [area, seed] : seeds) {
+    poll();
     if (is_taken[seed]) continue;
     FlatFace face{surface.normal(seed), surface.normal(seed).dot(surface.triangle(seed)[0]), 0, 0, {seed}};
     is_taken[seed] = true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fits/faces.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +47,7 @@ class Finder {
     std::vector<RoundFace> faces;
     for (std::uint32_t seed = 0; seed < is_taken_.size(); ++seed) {
       if (is_taken_[seed] || is_tried_[seed] || !isBent(seed)) continue;
+      pollStop();
       if (std::optional<RoundFace> face = grownFrom(seed)) faces.push_back(std::move(*face));
     }
     return faces;
@@ -78,7 +80,8 @@ class Finder {
     ++round_;
     std::vector<std::uint32_t> found{seed};
     seen_[seed] = round_;
-    for (std::size_t next = 0; next < found.size() && found.size() < most; ++next)
+    StridedPoll poll;
+    for (std::size_t next = 0; next < found.size() && found.size() < most; ++next, poll())
       for (const std::uint32_t k : surface_.neighbours()[found[next]]) {
         if (k == kNoFacet || seen_[k] == round_) continue;
         seen_[k] = round_;

@@ -13,6 +13,7 @@
 #include <numbers>
 
 #include "scene/thread_form.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -89,7 +90,9 @@ std::vector<Flank> flanksAround(FlankFacets& facets, const Line& line, bool is_i
   constexpr double kLeastLead = 0.002, kMostLead = 1;  // lead divided by 2 pi r
   const Vec3 x = line.axis.unitOrthogonal(), y = line.axis.cross(x);
   std::vector<Flank> out;
+  StridedPoll poll;
   for (const Facet& facet : facets.along(line.axis)) {
+    poll();
     const double slope = facet.n.dot(line.axis);
     if (std::abs(slope) < kLeastSlope) continue;
     const Vec3 c = facet.middle - line.p;
@@ -187,7 +190,9 @@ std::vector<std::uint32_t> aroundFlanks(const PartSurface& surface, const Line& 
       greatest_m = std::max(greatest_m, radius_m);
     }
   std::vector<std::uint32_t> out;
+  StridedPoll poll;
   for (std::uint32_t i = 0; i < surface.mesh().triangles.size(); ++i) {
+    poll();
     const Triangle t = surface.triangle(i);
     const Vec3 c = (t[0] + t[1] + t[2]) / 3 - line.p;
     const double along_m = line.axis.dot(c);
@@ -327,6 +332,7 @@ std::vector<ThreadFace> threadFaces(const PartSurface& surface, const std::vecto
   FlankFacets facets(surface);
   for (const Line& line : candidateAxes(surface, round))
     for (const bool is_inside : {false, true}) {
+      pollStop();
       std::vector<Flank> flanks = agreeing(flanksAround(facets, line, is_inside));
       keepOneRadius(flanks);
       if (!goAllAround(flanks)) continue;

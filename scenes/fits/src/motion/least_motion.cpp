@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion/least_motion.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <array>
@@ -88,6 +89,7 @@ Motions leastMotion(std::span<const GapRow> rows, std::span<const LooseBody> bod
     most_m.segment<6>(6 * Eigen::Index(i)).setConstant(bodies[i].most_m);
   double cost = costOf(slopes, most_m, e, x);
   for (int i = 0; i < kMostSteps && cost > 0; ++i) {
+    pollStop();
     const Motions step = newtonPoint(slopes, most_m, e, x) - x;
     double share = 1, next = costOf(slopes, most_m, e, x + step);
     for (int k = 0; k < kMostHalvings && !(next < cost); ++k)

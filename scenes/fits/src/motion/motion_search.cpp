@@ -2,6 +2,7 @@
 #include "motion/motion_search.h"
 
 #include "motion/pair_step.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -196,6 +197,7 @@ double MotionSearch::pairStops(const MovingPair& pair, std::uint32_t moving, std
   MovingPair there = pair;
   double s = 0;
   for (int i = 0; i < most_steps && s < most; ++i) {
+    pollStop();
     if (i > 0) there.X_HM = piece.motion_H.at(s) * piece.X_HM;
     if (i > 0 && work != nullptr && ++work->done >= work->most) return s;
     const double safe = safeStep(there, moving, held);
@@ -272,7 +274,9 @@ double MotionSearch::step(const Near& near, const std::optional<Turning>& turnin
     return bound;
   };
   std::vector<Waiting> stack{{0, 0, boundOf(0, 0)}};
+  StridedPoll poll;
   while (!stack.empty() && best > 0) {
+    poll();
     if (work != nullptr && work->isSpent()) return 0;
     if (work != nullptr) ++work->done;
     const Waiting now = stack.back();

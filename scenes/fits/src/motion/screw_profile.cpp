@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "surface/around_axis.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -143,6 +144,7 @@ ScrewProfile::ScrewProfile(const PlacedSurface& nut, const Motion& screw, const 
       lead_m_(std::abs(screw.forward_m) * kWholeTurn_rad),
       least_m_(kBins, 1e300) {
   for (std::uint32_t i = 0; i < nut.surface->mesh().triangles.size(); ++i) {
+    pollStop();
     const Triangle triangle = placedTriangle(nut, i);
     if (std::ranges::all_of(triangle, [&](const Vec3& p) { return ahead_W.dot(p) > end_m; })) continue;
     forEachBin(triangle, [&](int bin, double least, double) {
@@ -155,12 +157,14 @@ ScrewProfile::ScrewProfile(const PlacedSurface& nut, const Motion& screw, const 
 
 std::vector<std::uint8_t> ScrewProfile::passing(const PlacedSurface& part) const {
   std::vector<std::uint8_t> out(part.surface->mesh().triangles.size(), 1);
-  for (std::uint32_t i = 0; i < out.size(); ++i)
+  for (std::uint32_t i = 0; i < out.size(); ++i) {
+    pollStop();
     forEachBin(placedTriangle(part, i), [&](int bin, double, double greatest) {
       if (greatest < least_m_[static_cast<std::size_t>(bin)]) return true;
       out[i] = 0;
       return false;
     });
+  }
   return out;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_measures.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <array>
@@ -66,6 +67,7 @@ class EdgeSearch {
       box.add(a);
       box.add(b);
       if (distance2(box, in_.box()) > 0) continue;
+      pollStop();
       searchPieces(i, a, b, best);
     }
   }

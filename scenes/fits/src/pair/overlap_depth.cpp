@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "surface/surface_piece.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -108,6 +109,7 @@ class DepthSearch {
     search_.work = 0;
     if (!of_.tree().nodes().empty()) addNode(0);
     while (!waiting_.empty() && waiting_.top().bound_m > search_.enough_m()) {
+      pollStop();
       if (search_.isSpent()) return waiting_.top().bound_m;
       const Waiting next = waiting_.top();
       waiting_.pop();
@@ -222,6 +224,7 @@ class TouchSearch {
                             [&](std::uint32_t facet) { addFacet(facet, box_T); });
     addCorners(box_T);
     while (!waiting_.empty()) {
+      pollStop();
       if (search_.isSpent()) return false;
       const Touch next = std::move(waiting_.back());
       waiting_.pop_back();

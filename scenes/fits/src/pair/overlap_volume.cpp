@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "surface/surface_piece.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -104,6 +105,7 @@ Flux fluxInside(const PartSurface& of, const PartSurface& solid, const Pose& X_S
   const Box box_O = moved(solid.box(), X_SO.inverse());
   of.tree().forEach([&](const Box& node) { return distance2(node, box_O) == 0; },
                     [&](std::uint32_t i) {
+                      pollStop();
                       const Triangle t = of.triangle(i);
                       const Flat facet({X_SO * t[0], X_SO * t[1], X_SO * t[2]});
                       const double length2 = facet.n.norm();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_measures.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 
@@ -48,6 +49,7 @@ Overlap SharedBalls::grownFrom(const Vec3& p_A, Vec3 step_A) const {
   Vec3 best_A = p_A;
   double radius_m = radiusAt(p_A);
   for (int round = 0; round < kRounds; ++round) {
+    pollStop();
     const Vec3 from_A = best_A;
     for (int k = 0; k < 27; ++k) {
       const Vec3 at_A = from_A + step_A.cwiseProduct(Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
@@ -68,6 +70,7 @@ Overlap SharedBalls::greatest() const {
   Vec3 best_A = Vec3::Zero();
   double best_m = 0;
   for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
+    pollStop();
     const Vec3 at(i % kGrid + 0.5, i / kGrid % kGrid + 0.5, i / kGrid / kGrid + 0.5);
     const Vec3 p_A = both_A_.min + at.cwiseProduct(cell);
     if (const double radius_m = radiusAt(p_A); radius_m > best_m) {

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "vps/mesh_overlap.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -36,6 +37,7 @@ void appendCorners(const std::vector<PlacedSurface>& parts, const std::vector<Po
     const Vec3 p_A = X_AO * vertices[i];
     if (!isWithin(p_A, other.box())) continue;
     ++out.work;
+    pollStop();
     const double depth_m = -other.solid().signedDistance(p_A);
     if (depth_m > more_than_m) deep.push_back({depth_m, i});
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "proof/blocked_proof.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +54,7 @@ class Reaches {
     Bounded best{std::numeric_limits<double>::infinity()};
     double radius_m = 0.5 * above.box().size().norm();
     for (int i = 0; i < kBalls; ++i, radius_m *= kSmaller) {
+      pollStop();
       const Vec3 c_A = touch.q_A - radius_m * touch.n_A;
       const double inside_m = -above.solid().signedDistance(c_A);
       if (!(inside_m > 0)) continue;

@@ -8,8 +8,6 @@
 #include <optional>
 #include <span>
 
-#include <tbb/parallel_for.h>
-
 #include "fits/fits.h"
 #include "pair/pair_measures.h"
 #include "pair/touches.h"
@@ -18,6 +16,7 @@
 #include "proof/pose_cover.h"
 #include "text/words.h"
 #include "vps/mesh_overlap.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -73,6 +72,8 @@ class PlaceSearch {
   }
 
   [[nodiscard]] CheckedPlaces search(const Progress& progress) {
+    constexpr const char* kDoing = "searching for places without overlap";
+    StoppableWork search(progress, kDoing);
     CheckedPlaces out;
     const std::vector<std::vector<std::size_t>> groups = clashes_.groups();
     const auto add = [&out](CheckedGroup group) {
@@ -84,7 +85,7 @@ class PlaceSearch {
       out.groups.push_back(std::move(group));
     };
     for (std::size_t i = 0; i < groups.size(); ++i) {
-      if (progress) progress("searching for places without overlap", double(i) / double(groups.size()));
+      search.report(kDoing, double(i) / double(groups.size()));
       std::vector<std::string> names;
       for (const std::size_t body : groups[i])
         for (const std::size_t part : bodies_[body].parts) names.push_back(parts_[part].name);
@@ -92,7 +93,7 @@ class PlaceSearch {
       auto [verdict, reason] = freeGroup(groups[i], out.verdict == Verdict::Blocked);
       add({std::move(names), verdict, std::move(reason)});
     }
-    for (const NearPair& pair : clashes_.tied()) add(tiedGroup(pair));
+    for (const NearPair& pair : clashes_.tied()) pollStop(), add(tiedGroup(pair));
     if (out.verdict == Verdict::Fits && !isFree(movedPairs(), X_WP_)) {
       out.verdict = Verdict::NotShown;
       out.reason = "no places without overlap were found for all parts at once";
@@ -384,7 +385,7 @@ class PlaceSearch {
   double addTouches(const std::vector<NearPair>& pairs, Tried& tried) {
     constexpr double kSame_m = 0.05e-6;  // smaller overlaps need no touch
     std::vector<PairTouches> found(pairs.size());
-    tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+    onAllCores(pairs.size(), [&](std::size_t i) {
       found[i] = touchesOf(parts_, tried.X_WP, pairs[i].a, pairs[i].b, pairs[i].allowed_m + kSame_m);
     });
     double most_m = 0;
@@ -417,7 +418,7 @@ class PlaceSearch {
       for (const std::size_t part : {pair.a, pair.b})
         if (at[part].box_W.isEmpty())
           for (const Vec3& p : at[part].surface->mesh().vertices) at[part].box_W.add(X_WP[part] * p);
-    tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+    onAllCores(pairs.size(), [&](std::size_t i) {
       const std::optional<CheckedPair> pair = checkPair(at[pairs[i].a], at[pairs[i].b], checked_.near_m);
       // A pair that is uncertain at its drawn place makes the whole check uncertain, but not its new place.
       const bool is_new_doubt = pair && pair->is_uncertain && !pairs[i].is_uncertain;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface/around_axis.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,8 +57,9 @@ AxisExtent axisExtent(const Triangle& t, const Vec3& center, const Vec3& axis, c
 AxisExtents::AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& center)
     : nodes(part.tree().nodes().size()), triangles(part.mesh().triangles.size()) {
   const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
+  StridedPoll poll;
   for (std::uint32_t i = 0; i < triangles.size(); ++i)
-    triangles[i] = axisExtent(part.triangle(i), center, axis, u, v);
+    poll(), triangles[i] = axisExtent(part.triangle(i), center, axis, u, v);
   const auto& tree = part.tree().nodes();
   for (std::size_t n = tree.size(); n-- > 0;) {  // child nodes follow their parents
     if (!tree[n].isLeaf()) {

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "vps/box.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -66,6 +67,7 @@ std::vector<Crack> cracksOf(const Mesh& mesh, const std::vector<std::array<std::
   };
   const double most_m = kWidest * bounds(mesh).size().norm();
   for (const OpenEdge& edge : open) {
+    pollStop();
     if (endsCrack(edge.from)) continue;
     const Vec3& p = v[edge.from];
     const double limit_m = std::min(most_m, kNarrow * (v[edge.to] - p).norm());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface/part_surface.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +63,9 @@ void PartSurface::gatherNormals() {
   std::vector<std::vector<std::uint32_t>> facets(mesh().vertices.size());
   for (std::uint32_t i = 0; i < mesh().triangles.size(); ++i)
     for (const std::uint32_t v : mesh().triangles[i]) facets[v].push_back(i);
+  StridedPoll poll;
   for (const std::vector<std::uint32_t>& of_vertex : facets) {
+    poll();
     const std::size_t first = around_.size();
     first_around_.push_back(static_cast<std::uint32_t>(first));
     for (const std::uint32_t i : of_vertex) {
@@ -78,7 +81,9 @@ void PartSurface::gatherNormals() {
 
 void PartSurface::findPlanes() {
   planes_.resize(tree_.nodes().size());
+  StridedPoll poll;
   for (std::size_t node = 0; node < planes_.size(); ++node) {
+    poll();
     const std::uint32_t first = tree_.nodes()[node].first, end = tree_.nodes()[node].end;
     const auto facets = std::span(tree_.order()).subspan(first, end - first);
     const Vec3 n = normal(facets[0]);
@@ -131,8 +136,10 @@ Triangle PartSurface::triangle(std::uint32_t i) const {
 // than kCurved_rad is taken for a curve, and the estimate is then too large.
 void PartSurface::estimateChords() {
   chord_m_.assign(mesh().triangles.size(), 0);
+  StridedPoll poll;
   for (std::uint32_t i = 0; i < chord_m_.size(); ++i)
     for (int e = 0; e < 3; ++e) {
+      poll();
       const std::uint32_t other = neighbours_[i][e];
       if (other == kNoFacet) continue;
       const double turn_rad = angleBetween(normal(i), normal(other));

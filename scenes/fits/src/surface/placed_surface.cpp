@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface/placed_surface.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstdio>
 
@@ -56,13 +54,11 @@ std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, c
     else
       source[i] = equal;
   }
-  if (progress) progress("preparing the parts", 0);
-  tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t k) {
+  forEachOnCores(own.size(), progress, "preparing the parts", [&](std::size_t k) {
     const DrawnPart& part = parts[own[k]];
     placed[own[k]].surface = std::make_shared<const PartSurface>(
         std::make_shared<const Solid>(part.mesh, part.name), part.chord_m);
   });
-  if (progress) progress("preparing the parts", 1);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     PlacedSurface& part = placed[i];
     part.name = parts[i].name;

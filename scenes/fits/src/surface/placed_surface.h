@@ -6,14 +6,12 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include <tbb/parallel_for.h>
-
 #include "surface/part_surface.h"
 #include "vps/errors.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/fits/check_types.h"
 
 namespace vps::scenes {
@@ -46,17 +44,15 @@ const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::s
 std::vector<std::pair<std::size_t, std::size_t>> nearPairs(const std::vector<PlacedSurface>& parts,
                                                            double near_m);
 
-/// Calls `work(i)` for i = 0 to count - 1 on all cores, and reports progress on the caller's thread only. An
-/// exception from `work` or `progress` ends the loop.
+/// Calls `work(i)` for i = 0 to count - 1 on all cores. Reports progress after each call, and from pollStop()
+/// within the calls, on one thread at a time. An exception from `work` or `progress` ends the loop.
 template <class Work>
 void forEachOnCores(std::size_t count, const Progress& progress, const char* doing, Work work) {
-  const std::thread::id caller = std::this_thread::get_id();
+  StoppableWork all(progress, doing);
   std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+  onAllCores(count, [&](std::size_t i) {
     work(i);
-    ++done;
-    if (progress && std::this_thread::get_id() == caller)
-      progress(doing, static_cast<double>(done) / static_cast<double>(count));
+    all.report(doing, static_cast<double>(++done) / static_cast<double>(count));
   });
 }
 

@@ -8,6 +8,7 @@
 
 #include "check/check_placed.h"
 #include "surface/placed_surface.h"
+#include "vps/stoppable.h"
 #include "ways/pair_motions.h"
 #include "ways/way.h"
 
@@ -310,6 +311,7 @@ void addLostClearances(const Scene& scene, const std::vector<PlacedSurface>& pla
 
 std::vector<WayFault> checkWays(const Scene& scene, const Progress& progress,
                                 const std::map<std::string, double>& planned_clearance_m) {
+  const StoppableWork stoppable(progress, "checking the paths");
   const std::vector<DrawnPart> drawn = drawnParts(scene);
   const std::vector<PlacedSurface> placed = placedSurfaces(drawn, progress);
   std::vector<WayFault> of_step(scene.steps.size());

@@ -16,6 +16,7 @@
 #include "overlaps/drawn_overlaps.h"
 #include "surface/placed_surface.h"
 #include "vps/errors.h"
+#include "vps/stoppable.h"
 #include "ways/resting.h"
 #include "ways/way.h"
 
@@ -286,6 +287,7 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
                         const PlanSettings& settings, const Progress& progress) {
   if (parts.empty()) throw LoadError("", name, "has no parts to plan");
   const std::vector<std::size_t> fixed = indicesOf(settings.fixed, parts);
+  const StoppableWork stoppable(progress, "preparing the parts");
   double begun_s = wallSeconds();
   PlanResult result;
   result.assembly = name;

@@ -10,6 +10,7 @@
 #include "scene/steps.h"
 #include "study/variants.h"
 #include "vps/errors.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/run/assemble.h"
 #include "world/drawn_targets.h"
@@ -191,12 +192,13 @@ MarginResult measureMargins(const Scene& scene, const MarginOptions& options) {
   if (!(options.resolution_m > 0) || !std::isfinite(options.resolution_m))
     throw LoadError(scene.file, "", "margins need a resolution of more than 0");
   MarginResult result{scene.name, options.resolution_m, options.has_contact, {}};
+  StoppableWork work(options.progress, "margins");
   for (std::size_t i = 0; i < scene.steps.size(); ++i) {
     if (options.stop != nullptr && *options.stop) break;
     MarginOptions one = options;
     if (options.progress)
       one.progress = [&, i](std::string_view doing, double share) {
-        options.progress(doing, (static_cast<double>(i) + share) / static_cast<double>(scene.steps.size()));
+        work.report(doing, (static_cast<double>(i) + share) / static_cast<double>(scene.steps.size()));
       };
     StepMargin margin = StepProbe(excerptOf(scene, i), one).measure();
     margin.step = i;

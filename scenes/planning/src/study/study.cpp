@@ -11,6 +11,7 @@
 #include "procedure/many_runs.h"
 #include "record/scene_archive.h"
 #include "study/variants.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {
@@ -26,6 +27,10 @@ class Study {
 
   /// Makes one run and adds it; a run that was stopped has no valid verdict and is dropped.
   void makeRun(std::size_t index, const std::atomic<bool>& stop) {
+    const Progress until_stopped = [&stop](std::string_view, double) {
+      if (stop) throw RunStopped();
+    };
+    const StoppableWork work(until_stopped);
     StudyRun made = run(numbers_[index], stop);
     const std::lock_guard lock(mutex_);
     if (stop) return;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // estimate(): the figures that explain() measures, estimated from areas and edges alone.
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "vps/box.h"
 #include "vps/mesh_repair.h"
 #include "vps/model_estimate.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/run/explain.h"
 #include "world/placed_parts.h"
 
@@ -46,7 +46,7 @@ class Estimator {
                             [](const PartModelPlan& part) { return !part.kept_P.empty(); }) ||
         std::ranges::any_of(out_.plan.steps, [](const FieldPlan& step) { return step.region_W.has_value(); });
     const auto extent = is_cropped ? ModelEstimate::Extent::Any : ModelEstimate::Extent::WholeOnly;
-    tbb::parallel_for(std::size_t{0}, scene_.parts.size(), [&](std::size_t i) {
+    onAllCores(scene_.parts.size(), [&](std::size_t i) {
       const PartModelPlan& planned = out_.plan.parts[i];
       if (planned.same_as || !(isModelled(planned) || isCooked(i))) return;
       const Fidelity fidelity = fidelityOf(scene_.parts[i], scene_.fidelity);

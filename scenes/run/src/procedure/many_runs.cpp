@@ -47,6 +47,7 @@ void forEachRun(std::size_t count, const ManyRunsOptions& options,
     tbb::task_arena own(options.has_one_core_each ? 1 : tbb::task_arena::automatic);
     for (std::size_t i = shared.next++; i < count && !shared.stop; i = shared.next++) try {
         own.execute([&] { run(i, shared.stop); });
+      } catch (const RunStopped&) {  // `stop` is set, so no further run begins
       } catch (...) {
         shared.fail();
       }

@@ -8,6 +8,9 @@
 
 namespace vps::scenes {
 
+/// Leaves a run whose stop is set; forEachRun() takes it as the end of that run.
+struct RunStopped {};
+
 struct ManyRunsOptions {
   unsigned threads = 0;                     ///< number of threads for the runs; 0: one for each core
   bool has_one_core_each = false;           ///< a run uses no more than one core for its parallel loops

@@ -16,6 +16,7 @@
 #include "vps/mesh.h"
 #include "vps/mesh_repair.h"
 #include "vps/pose.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
@@ -290,6 +291,7 @@ std::vector<StepResult> checkDrawnTargets(Scene& scene, const Progress& progress
   const auto kept =
       std::make_shared<const CheckResult>(checkAssembly(scene.name, drawnParts(scene), settings, progress));
   if (to != nullptr) *to = kept;
+  const StoppableWork work(progress, "checking the targets", 1);
   const CheckResult& checked = *kept;
   std::vector<StepResult> steps(scene.steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {

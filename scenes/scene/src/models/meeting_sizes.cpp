@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "models/meeting_sizes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,6 +12,7 @@
 #include "text/words.h"
 #include "vps/box.h"
 #include "vps/mesh_distance.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -156,6 +155,7 @@ WallSizes wallSizes(const Mesh& mesh, double most_m) {
   if (!(search.least_m() < most_m))
     return sizes;  // no distance between facets is both above least_m() and below most_m
   forEachSample(mesh, [&](const Vec3& p, const Vec3& normal) {
+    pollStop();
     if (const auto gap_m = search.width(p, normal, normal)) sizes.gaps_m.push_back(*gap_m);
     if (const auto wall_m = search.width(p, normal, -normal))
       sizes.thinnest_m = std::min(sizes.thinnest_m, *wall_m);
@@ -172,7 +172,7 @@ std::vector<MeetingSize> meetingSizes(const Scene& scene, double most_m) {
   std::vector<char> is_moved(count);
   for (std::size_t i = 0; i < count; ++i) is_moved[i] = moves(scene, i);
   const auto takesPart = [&](std::size_t i) { return is_moved[i] || scene.parts[i].is_fixed; };
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+  onAllCores(count, [&](std::size_t i) {
     if (!takesPart(i)) return;
     const Mesh& mesh = scene.parts[i].part.mesh;
     walls[i] = wallSizes(mesh, most_m);

@@ -19,6 +19,7 @@
 #include "vps/errors.h"
 #include "vps/mesh_repair.h"
 #include "vps/pointshell.h"
+#include "vps/stoppable.h"
 #include "vps/voxmap.h"
 
 namespace vps::scenes {
@@ -148,6 +149,7 @@ class ModelBuilder {
         plan_(plan),
         parts_(std::move(parts)),
         options_(options),
+        work_(options.progress, "modelling"),
         times_(scene.parts.size()),
         warnings_(scene.parts.size()),
         errors_(scene.parts.size()),
@@ -155,9 +157,11 @@ class ModelBuilder {
 
   std::vector<BuildTimes> run() {
     const std::vector<std::size_t> order = largestFirst();
+    StoppableWork* const own = WorkOnThread::current();
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, order.size(), 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
+          const WorkOnThread on_thread(own);
           for (std::size_t k = range.begin(); k < range.end(); ++k) tryPart(order[k]);
         },
         tbb::simple_partitioner());
@@ -166,7 +170,7 @@ class ModelBuilder {
       if (options_.warn) std::ranges::for_each(warnings_[i], options_.warn);
       if (plan_.parts[i].same_as) share(i);
     }
-    if (options_.progress) options_.progress("modelling", 1);
+    work_.report("modelling", 1);
     return std::move(times_);
   }
 
@@ -199,9 +203,8 @@ class ModelBuilder {
   void report(std::size_t i) {
     if (!options_.progress) return;
     const std::lock_guard lock(reporting_);
-    options_.progress(
-        "modelling " + scene_.parts[i].part.name,
-        static_cast<double>(begun_) / static_cast<double>(std::max<std::size_t>(1, triangles_)));
+    work_.report("modelling " + scene_.parts[i].part.name,
+                 static_cast<double>(begun_) / static_cast<double>(std::max<std::size_t>(1, triangles_)));
     begun_ += scene_.parts[i].part.mesh.triangles.size();
   }
 
@@ -234,6 +237,7 @@ class ModelBuilder {
   const ModelPlan& plan_;
   const std::vector<std::size_t> parts_;  ///< indices of parts, ascending
   const ModelOptions& options_;
+  StoppableWork work_;  ///< lives on the caller's thread, as this object does
   std::vector<BuildTimes> times_;
   std::vector<std::vector<std::string>> warnings_;  ///< warnings of each part
   std::vector<std::exception_ptr> errors_;          ///< error of each part

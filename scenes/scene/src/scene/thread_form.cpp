@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/thread_form.h"
+#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +38,7 @@ class RadiusMap {
     }
     row_m_ = (high_m - low_m_) / kHeights;
     if (!(row_m_ > 0)) return;
-    for (const auto& t : mesh.triangles) sample(at[t[0]], at[t[1]], at[t[2]]);
+    for (const auto& t : mesh.triangles) pollStop(), sample(at[t[0]], at[t[1]], at[t[2]]);
   }
 
   [[nodiscard]] double row_m() const { return row_m_; }
@@ -210,6 +211,7 @@ std::optional<ThreadForm> threadIn(const RadiusMap& map, bool is_inside) {
   double best_share = kMostlyThread;
   for (int length = RadiusMap::kHeights; length >= RadiusMap::kHeights / 8 && !best; length = length * 2 / 3)
     for (int first = 0; first + length <= RadiusMap::kHeights; first += std::max(1, length / 8)) {
+      pollStop();
       const Spectrum spectrum(std::span<const Row>(rows).subspan(static_cast<std::size_t>(first),
                                                                  static_cast<std::size_t>(length)),
                               map.row_m());

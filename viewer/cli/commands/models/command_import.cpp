@@ -18,6 +18,7 @@
 #include "vps/errors.h"
 #include "vps/mesh_repair.h"
 #include "vps_scenes/cad/import.h"
+#include "vps_scenes/cad/time_limit.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/fits/fasteners.h"
 #include "vps_scenes/planning/plan.h"
@@ -141,9 +142,10 @@ int runImport(const ImportArguments& given) {
   OutputFile json(given.json, given.files);
 
   ProgressBar bar;
+  const scenes::TimeLimit limit{settings.most_s};
   scenes::ImportedCad cad = importedCad(given.files, settings, given.cad, bar.progress());
-  const std::vector<scenes::Fastener> fasteners =
-      scenes::findFasteners(scenes::drawnParts(cad), bar.progress());
+  const std::vector<scenes::Fastener> fasteners = scenes::findFasteners(
+      scenes::drawnParts(cad), scenes::withTimeLimit(bar.progress(), limit, given.files.front()));
   bar.clear();
   const std::vector<scenes::PartGroup> groups = groupsOf(cad, given.cad);
 

@@ -50,9 +50,12 @@ struct ImportSettings {
   /// LoadError. False: runs the library in this process, for a debugger, or in a program whose other threads
   /// use Open CASCADE or Coin.
   bool in_own_process = true;
-  /// Limits of the child process, which is ended with a LoadError when it exceeds one of them.
-  std::uint64_t most_memory_bytes = 0;  ///< 0: half of the machine's memory
-  double most_s = 0;                    ///< 0: no limit
+  /// Limit of the child process, which is ended with a LoadError when it exceeds the limit; 0: half of the
+  /// machine's memory.
+  std::uint64_t most_memory_bytes = 0;
+  /// Limit of the time to read all files and to weld their meshes, which then end with a LoadError; 0: no
+  /// limit.
+  double most_s = 0;
   /// Cache in which the parts of STEP, IGES and BREP files are kept by the file's content and these settings;
   /// null: the parts are made again each time. A file that names other files is always read.
   const ByteCache* cache = nullptr;
@@ -99,6 +102,7 @@ VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettin
                                      const Progress& progress = {});
 
 /// Reads the parts of several files in one frame, as if they were one file with the name of the first file.
+/// First refuses a file that is missing, empty, cut, or without a unit, before it reads any of the files.
 /// Adds a warning if the files seem to lie in frames of their own, that is, if the parts of each file lie
 /// about the origin and overlap the parts of another file.
 VPS_SCENES_API ImportedCad importCad(const std::vector<std::string>& files,
