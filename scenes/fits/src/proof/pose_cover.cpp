@@ -14,6 +14,7 @@
 #include "proof/inner_body.h"
 #include "surface/placed_surface.h"
 #include "vps/mesh_overlap.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -93,6 +94,7 @@ class CoverSearch {
     std::size_t made = 1;
     while (!cells.empty()) {
       if (out_.work > most_work_) return out_;
+      pollStop();
       const Cell cell = cells.top();
       cells.pop();
       ++out_.cells;
