@@ -35,7 +35,7 @@ bool readNormal(std::string_view text, Vec3& n) {
   return false;
 }
 
-struct Reach {
+struct CutReach {
   double low_m = 1e300, high_m = -1e300;
   void add(double at_m) {
     low_m = std::min(low_m, at_m);
@@ -45,8 +45,8 @@ struct Reach {
   [[nodiscard]] double middle() const { return 0.5 * (low_m + high_m); }
 };
 
-Reach reachOf(const Mesh& mesh, const Pose& X_WP, const Vec3& n_W) {
-  Reach out;
+CutReach reachOf(const Mesh& mesh, const Pose& X_WP, const Vec3& n_W) {
+  CutReach out;
   for (const Vec3& p : mesh.vertices) out.add(n_W.dot(X_WP * p));
   return out;
 }
@@ -70,16 +70,16 @@ std::string axisOf(const SectionPlane& plane) {
 }
 
 /// Throws LoadError if the plane cuts no part.
-CutPlace cutPlace(const SectionPlane& plane, const std::vector<Reach>& reaches) {
-  Reach all;
-  for (const Reach& part : reaches) {
+CutPlace cutPlace(const SectionPlane& plane, const std::vector<CutReach>& reaches) {
+  CutReach all;
+  for (const CutReach& part : reaches) {
     all.add(part.low_m);
     all.add(part.high_m);
   }
   CutPlace out;
   out.offset_m = plane.offset_m - shift_m(all.size());
   bool is_any_cut = false;
-  for (const Reach& part : reaches) {
+  for (const CutReach& part : reaches) {
     out.is_cut.push_back(part.low_m < out.offset_m && out.offset_m < part.high_m);
     is_any_cut = is_any_cut || out.is_cut.back();
   }
@@ -106,7 +106,7 @@ void orient(const Vec3& n_W, PlaneSection& section) {
 /// Moves the point (0, 0) of the outlines to their middle.
 void centre(PlaneSection& section) {
   if (section.parts.empty()) return;
-  std::array<Reach, 2> reach;
+  std::array<CutReach, 2> reach;
   for (const SectionOutline& part : section.parts)
     for (const auto& chain : part.chains)
       for (const auto& p : chain)
@@ -145,7 +145,7 @@ SectionPlane sectionPlaneFromText(const std::string& text, const std::string& wh
 }
 
 void requireCut(const SectionPlane& plane, const std::vector<DrawnPart>& parts) {
-  std::vector<Reach> reaches;
+  std::vector<CutReach> reaches;
   for (const DrawnPart& part : parts) reaches.push_back(reachOf(part.mesh, part.X_WP, plane.n_W));
   cutPlace(plane, reaches);
 }
@@ -154,7 +154,7 @@ std::vector<PlaneSection> planeSections(const std::vector<PlacedSurface>& parts,
                                         const std::vector<SectionPlane>& planes, const Progress& progress) {
   std::vector<PlaneSection> out;
   for (const SectionPlane& plane : planes) {
-    std::vector<Reach> reaches;
+    std::vector<CutReach> reaches;
     for (const PlacedSurface& part : parts)
       reaches.push_back(reachOf(part.surface->mesh(), part.X_WP, plane.n_W));
     const CutPlace place = cutPlace(plane, reaches);
