@@ -3,12 +3,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "vps_scenes/fits/check_types.h"
 #include "vps_scenes/run/result.h"
 #include "vps_viewer/export.h"
 
 namespace vps::viewer {
+
+/// A unit vector in words: "+x", or "(0.71, 0.71, 0.00)".
+VPS_VIEWER_API std::string directionWords(const Vec3& d);
+/// "'a', 'b'"; of more than eight names the first eight "and 3 more".
+VPS_VIEWER_API std::string listedNames(const std::vector<std::string>& names);
 
 /// The words of a verdict: "fits", "blocked", "not shown".
 VPS_VIEWER_API const char* words(scenes::Verdict verdict);
