@@ -35,7 +35,7 @@ Pose viewFrame(const scenes::Book& book) {
   return {R_WV, Vec3::Zero()};
 }
 
-Camera cameraFor(const Box& box_V, const Pose& X_WV, double aspect) {
+Camera bookCamera(const Box& box_V, const Pose& X_WV, double aspect) {
   Camera camera = frameScene(box_V, kToViewer, 0.5, aspect, kBookMargin);
   camera.eye_W = X_WV * camera.eye_W;
   camera.target_W = X_WV * camera.target_W;
@@ -135,7 +135,7 @@ BookPicture coverPicture(const RenderScene& drawn, const scenes::Book& book, dou
     picture.snapshot.bodies.push_back({part.part, placeOf(part), scenes::BodyRole::Mounted});
     addBox(box_V, moved(part.box_P, X_VW * placeOf(part)));
   }
-  picture.camera = cameraFor(box_V, X_WV, aspect);
+  picture.camera = bookCamera(box_V, X_WV, aspect);
   for (const scenes::BookItem& item : book.items) {
     const scenes::BookPart& part = book.parts.at(item.names.front());
     picture.balloons.push_back(
@@ -181,7 +181,7 @@ BookPicture stepPicture(const RenderScene& drawn, const scenes::Book& book,
         grown(close_V, std::max(kAround * whole_V.size().norm(), 0.5 * close_V.size().norm()));
     whole_V = {whole_V.min.cwiseMax(around_V.min), whole_V.max.cwiseMin(around_V.max)};
   }
-  picture.camera = cameraFor(whole_V, X_WV, aspect);
+  picture.camera = bookCamera(whole_V, X_WV, aspect);
   for (const BookRow& row : rowsOf(book, step)) {
     const scenes::BookPart& part = book.parts.at(row.names.front());
     const Pose X_WP = row.is_moved ? start_W * part.X_WP : part.X_WP;
