@@ -129,8 +129,8 @@ void addOrder(const scenes::BookStep& step, std::vector<std::string>& lines) {
 void addClearance(const scenes::PlannedStep& planned, std::vector<std::string>& lines) {
   constexpr double kFine_m = 1e-3;
   if (planned.clearance_m)
-    lines.push_back("On its path it clears '" + planned.nearest + "' by only " +
-                    (*planned.clearance_m < kFine_m ? micrometres(*planned.clearance_m, "%.0f µm")
+    lines.push_back("On its path it clears '" + planned.nearest + "' by " +
+                    (*planned.clearance_m < kFine_m ? "only " + micrometres(*planned.clearance_m, "%.0f µm")
                                                     : format(1e3 * *planned.clearance_m, "%.3f mm")) +
                     ".");
   if (planned.allowance_m > 0)
