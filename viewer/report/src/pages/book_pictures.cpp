@@ -35,12 +35,18 @@ Pose viewFrame(const scenes::Book& book) {
   return {R_WV, Vec3::Zero()};
 }
 
-Camera bookCamera(const Box& box_V, const Pose& X_WV, double aspect) {
-  Camera camera = frameScene(box_V, kToViewer, 0.5, aspect, kBookMargin);
+/// Lets the camera show a box, which is given in V.
+void frameBook(const Box& box_V, const Pose& X_WV, double aspect, BookPicture& picture) {
+  Camera& camera = picture.camera;
+  camera = frameScene(box_V, kToViewer, 0.5, aspect, kBookMargin);
   camera.eye_W = X_WV * camera.eye_W;
   camera.target_W = X_WV * camera.target_W;
   camera.up_W = X_WV.R.col(2);
-  return camera;
+  if (box_V.isEmpty()) return;
+  for (const double x : {box_V.min.x(), box_V.max.x()})
+    for (const double y : {box_V.min.y(), box_V.max.y()})
+      for (const double z : {box_V.min.z(), box_V.max.z()})
+        picture.corners_W.emplace_back(X_WV * Vec3(x, y, z));
 }
 
 /// A point on the part's surface for a balloon's line: on a facet that faces the eye, near the line from the
@@ -135,7 +141,7 @@ BookPicture coverPicture(const RenderScene& drawn, const scenes::Book& book, dou
     picture.snapshot.bodies.push_back({part.part, placeOf(part), scenes::BodyRole::Mounted});
     addBox(box_V, moved(part.box_P, X_VW * placeOf(part)));
   }
-  picture.camera = bookCamera(box_V, X_WV, aspect);
+  frameBook(box_V, X_WV, aspect, picture);
   for (const scenes::BookItem& item : book.items) {
     const scenes::BookPart& part = book.parts.at(item.names.front());
     picture.balloons.push_back(
@@ -181,7 +187,7 @@ BookPicture stepPicture(const RenderScene& drawn, const scenes::Book& book,
         grown(close_V, std::max(kAround * whole_V.size().norm(), 0.5 * close_V.size().norm()));
     whole_V = {whole_V.min.cwiseMax(around_V.min), whole_V.max.cwiseMin(around_V.max)};
   }
-  picture.camera = bookCamera(whole_V, X_WV, aspect);
+  frameBook(whole_V, X_WV, aspect, picture);
   for (const BookRow& row : rowsOf(book, step)) {
     const scenes::BookPart& part = book.parts.at(row.names.front());
     const Pose X_WP = row.is_moved ? start_W * part.X_WP : part.X_WP;

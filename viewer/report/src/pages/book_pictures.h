@@ -31,6 +31,7 @@ struct BookPicture {
   scenes::Snapshot snapshot;
   Camera camera;
   std::vector<BookBalloon> balloons;
+  std::vector<Vec3> corners_W;  ///< corners of a box around what is shown; balloons stand beside it
   std::vector<std::vector<Vec3>> arrows_W;  ///< chains of points; the head is at the last point
 };
 
@@ -57,7 +58,7 @@ struct BookRow {
 std::vector<BookRow> rowsOf(const scenes::Book& book, const scenes::BookStep& step);
 
 /// The picture as SVG: an image with arrows and balloons over it. The balloons stand in a column at each side
-/// without covering each other.
+/// of what is shown, without covering each other.
 /// @param image  data URL of the image; empty: arrows and balloons alone
 std::string pictureSvg(const BookPicture& picture, const std::string& image, int width, int height);
 

@@ -73,14 +73,18 @@ void spread(std::vector<PlacedBalloon>& column, double radius_px, double spacing
   }
 }
 
-std::string columnSvg(std::vector<PlacedBalloon> column, bool is_left, int width, int height) {
+/// @param edge_px  left or right edge of what is shown; the column stands outside of it, in the picture
+std::string columnSvg(std::vector<PlacedBalloon> column, bool is_left, double edge_px, int width,
+                      int height) {
   if (column.empty()) return {};
   constexpr double kRadius_px = 17, kGap_px = 6;
   std::ranges::stable_sort(column, {}, [](const PlacedBalloon& one) { return one.anchor[1]; });
   const double room_px = (height - 2 * kGap_px) / static_cast<double>(column.size());
   const double radius_px = std::clamp(0.5 * (room_px - kGap_px), 2.0, kRadius_px);
   spread(column, radius_px, std::min(2 * radius_px + kGap_px, room_px), height);
-  const double x_px = is_left ? radius_px + kGap_px : width - radius_px - kGap_px;
+  constexpr double kBeside_px = 30;
+  const double x_px = std::clamp(edge_px + (is_left ? -1 : 1) * (radius_px + kBeside_px), radius_px + kGap_px,
+                                 width - radius_px - kGap_px);
   std::string out;
   for (const PlacedBalloon& one : column) {
     const std::string x = px(x_px), y = px(one.y_px), to_x = px(one.anchor[0]), to_y = px(one.anchor[1]);
@@ -117,8 +121,15 @@ std::string pictureSvg(const BookPicture& picture, const std::string& image, int
     if (!(at[0] >= 0 && at[0] <= width && at[1] >= 0 && at[1] <= height)) continue;
     (at[0] < 0.5 * width ? left : right).push_back({&balloon, at, 0});
   }
-  return out + columnSvg(std::move(left), true, width, height) +
-         columnSvg(std::move(right), false, width, height) + "</svg>\n";
+  double left_px = width, right_px = 0;
+  for (const Vec3& corner_W : picture.corners_W) {
+    const double x_px = picture.camera.project(corner_W, width, height)[0];
+    left_px = std::min(left_px, x_px);
+    right_px = std::max(right_px, x_px);
+  }
+  if (!(left_px < right_px)) left_px = 0, right_px = width;
+  return out + columnSvg(std::move(left), true, left_px, width, height) +
+         columnSvg(std::move(right), false, right_px, width, height) + "</svg>\n";
 }
 
 }  // namespace vps::viewer
