@@ -68,6 +68,28 @@ TEST_F(Plan, RefusesABaseThatIsNoPartAndAFolderWithAScene) {
   EXPECT_EQ(run("plan drawn.toml -o planned --force").status, 0);
 }
 
+TEST_F(Plan, TheBookHasASheetForTheStepAndNamesItsParts) {
+  write("drawn.toml", scene());
+  const Ran ran = run("plan drawn.toml -o planned --book book.html");
+  ASSERT_EQ(ran.status, 0) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("book: book.html, 1 step\n"), std::string::npos) << ran.out;
+  const std::string page = slurp(folder_ / "book.html");
+  for (const char* words : {"Instruction book: pin &quot;1&quot;", "Step 1 of 1: pin", "<h2>Parts</h2>",
+                            "Move &#39;pin&#39; straight down (-z) by ", "A path was found for every part."})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  // Balloons for both parts on the cover and on the sheet, unless this machine cannot draw.
+  if (page.find("The pictures are missing") == std::string::npos) {
+    EXPECT_NE(page.find("href=\"data:image/png;base64,"), std::string::npos);
+    std::size_t balloons = 0;
+    for (std::size_t at = page.find("class=\"balloon\""); at != std::string::npos;
+         at = page.find("class=\"balloon\"", at + 1))
+      ++balloons;
+    EXPECT_EQ(balloons, 4U);
+  }
+  expectRefused("plan drawn.toml -o planned --force --book book.txt", "ends in .html or .pdf");
+  EXPECT_EQ(run("plan --verify planned/scene.toml --book book.html").status, 2);
+}
+
 /// An OBJ file of boxes in millimetres: name, least and greatest corner. Consecutive boxes with the same name
 /// are one part.
 struct NamedBox {

@@ -29,6 +29,37 @@ json withoutWall(json data) {
   return data;
 }
 
+TEST_F(Scenario, TheBookOfTheBearingBlockFollowsThePlan) {
+  const Ran ran = run("plan " + kScenes + "bearing_block/scene.toml -o planned --book book.html");
+  ASSERT_EQ(ran.status, 0) << ran.out << ran.err;
+  const std::string page = slurp(folder_ / "book.html");
+  const json plan = read("planned/plan.json");
+  std::size_t last = 0, number = 0;
+  for (const json& step : plan["assemblies"][0]["steps"]) {
+    const std::size_t at = page.find("<h2>Step " + std::to_string(++number) +
+                                     " of 9: " + step["name"].get<std::string>() + "</h2>");
+    ASSERT_NE(at, std::string::npos) << step["name"];
+    EXPECT_GT(at, last);
+    last = at;
+  }
+  EXPECT_EQ(number, 9U);
+  // Each part is in one row of the parts list; equal parts share a row.
+  const std::size_t from = page.find("<table class=\"items\">");
+  ASSERT_NE(from, std::string::npos);
+  const std::string items = page.substr(from, page.find("</table>", from) - from);
+  for (const char* row : {">housing<", ">bushing_lower<", ">shaft<", ">bushing_upper<", ">key<", ">cover<",
+                          ">dowel_2, dowel_1<", ">screw_2, screw_1<"}) {
+    const std::size_t at = items.find(row);
+    ASSERT_NE(at, std::string::npos) << row << "\n" << items;
+    EXPECT_EQ(items.find(row, at + 1), std::string::npos) << row;
+  }
+  for (const char* words : {"clears &#39;bushing_upper&#39; by only 500 µm",
+                            "Fit (shaft H8/h7) of "
+                            "&#39;shaft&#39; in &#39;bushing_lower&#39;: 12.000 mm in 12.024 mm",
+                            "Play of &#39;key&#39; in the finished assembly"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+}
+
 // Requirements for the bearing block: every part reaches its target, penetrates another by at most a quarter
 // of the fit's clearance or 10 um, and drifts by at most 5 um in the 2 s after release, with gravity and
 // without sleeping.

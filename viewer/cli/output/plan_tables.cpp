@@ -8,19 +8,11 @@
 #include <set>
 
 #include "output/table.h"
+#include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
 
 namespace {
-
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 8;
-  std::string out;
-  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
-    out += (i > 0 ? ", '" : "'") + names[i] + "'";
-  if (names.size() > kShown) out += " and " + std::to_string(names.size() - kShown) + " more";
-  return out;
-}
 
 /// A direction as text: "-z" for an axis of the world, else three numbers.
 std::string directionText(const Vec3& d) {
@@ -41,7 +33,7 @@ std::string needsText(const scenes::PlannedAssembly& assembly, const scenes::Pla
   std::vector<std::string> before;
   for (const scenes::PlannedOrder& one : assembly.order)
     if (one.after == step.name) before.push_back(one.before);
-  return before.empty() ? "" : "after " + listed(before);
+  return before.empty() ? "" : "after " + listedNames(before);
 }
 
 /// Describes the path with the least clearance.
@@ -65,7 +57,7 @@ std::string allowanceText(const scenes::PlannedAssembly& assembly) {
     most_m = std::max(most_m, step.allowance_m);
   }
   if (names.empty()) return "";
-  return "On the path of " + listed(names) + " facets overlap by up to " + um(most_m) +
+  return "On the path of " + listedNames(names) + " facets overlap by up to " + um(most_m) +
          " um more than drawn, which the errors of the meshes and 5 um allow. No path without this overlap "
          "was found: use a finer mesh; a hole may be too small.\n";
 }
@@ -79,7 +71,7 @@ std::string benchText(const scenes::PlannedAssembly& assembly) {
   }
   if (!is_any || left.empty()) return "";
   return "Parts that are not laid out on the bench, because they are covered on all sides when mounted: " +
-         listed(left) + ".\n";
+         listedNames(left) + ".\n";
 }
 
 /// A part without a path, and what is proven of it.
@@ -93,7 +85,7 @@ std::string blockedText(const scenes::BlockedPart& blocked) {
   return "'" + blocked.name +
          "' was not taken off: no path was found, which does not prove that there is none" +
          (blocked.by.empty() ? std::string()
-                             : "; in straight directions it is stopped by " + listed(blocked.by)) +
+                             : "; in straight directions it is stopped by " + listedNames(blocked.by)) +
          (blocked.is_searched ? "" : "; the search for paths of several legs ended at its limit") + ".\n";
 }
 
@@ -103,7 +95,8 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   Table table({"step", "<part", "<path", "<moves", "<stays", "passes [mm]", "fit [mm]", "<order"});
   for (std::size_t i = 0; i < assembly.steps.size(); ++i) {
     const scenes::PlannedStep& step = assembly.steps[i];
-    const std::string name = step.parts.size() == 1 ? step.name : step.name + " (" + listed(step.parts) + ")";
+    const std::string name =
+        step.parts.size() == 1 ? step.name : step.name + " (" + listedNames(step.parts) + ")";
     table.add(
         {std::to_string(i + 1), name, wayText(step), directionText(step.insertion_W),
          step.is_carried ? "by itself" : "held",
@@ -119,12 +112,12 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
     if (!step.is_carried) held.push_back(step.name);
   if (!held.empty())
     out +=
-        "Nothing carries " + listed(held) +
+        "Nothing carries " + listedNames(held) +
         "; the hand holds each of these parts until the end of its step. If a fixture holds such a part "
         "afterwards, give the fixture as a part; a part that is not to be assembled gets scenery = true.\n";
   for (const scenes::PlannedStep& step : assembly.steps)
     if (!step.falling.empty())
-      out += "Until '" + step.name + "' is in place, nothing carries " + listed(step.falling) + ".\n";
+      out += "Until '" + step.name + "' is in place, nothing carries " + listedNames(step.falling) + ".\n";
   for (const scenes::BlockedPart& blocked : assembly.blocked) out += blockedText(blocked);
   return out;
 }
@@ -210,7 +203,7 @@ std::string fastenerText(const std::vector<scenes::Fastener>& fasteners) {
   }
   std::string out;
   for (const auto& [words, parts] : by_words)
-    out += "  " + std::to_string(parts.size()) + " x " + words + ": " + listed(parts) + "\n";
+    out += "  " + std::to_string(parts.size()) + " x " + words + ": " + listedNames(parts) + "\n";
   return out.empty() ? "" : "Fasteners, by their shapes:\n" + out;
 }
 

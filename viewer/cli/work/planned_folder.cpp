@@ -25,6 +25,7 @@
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/planning/plan.h"
 #include "vps_scenes/scene/scene_text.h"
+#include "work/book_file.h"
 
 namespace vps::viewer {
 
@@ -197,6 +198,7 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
                     "has a scene.toml already; choose another folder, or replace it with --force");
   OutputFolder out(given.out);
   OutputFile json(given.json, given.assembly);
+  BookFile book(given.book, given.assembly);
   const scenes::Scene scene = sceneToPlan(given, bar.progress());
   for (const std::string& warning : scene.warnings)
     warn(given.assembly.size() > 1 ? warning : given.assembly.front() + ": " + warning);
@@ -227,6 +229,7 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   std::fputs(planTables(plan).c_str(), stdout);
   for (const scenes::WayFault& fault : faults) warn(inWords(fault));
   std::printf("%s; scene: %s/scene.toml\n", planHeadline(plan).c_str(), given.out.c_str());
+  book.write(scene, plan, !areCadFiles(given.assembly), bar);
   // The plan has already reported parts that nothing carries.
   const bool is_free = std::ranges::all_of(
       faults, [](const scenes::WayFault& fault) { return fault.kind == scenes::WayFaultKind::Support; });

@@ -15,6 +15,7 @@ namespace vps::viewer {
 struct PlanArguments {
   std::vector<std::string> assembly;  ///< CAD files in one frame, or one scene file
   std::string out, json;
+  std::string book;  ///< file of the instruction book, .html or .pdf; empty: none
   CadArguments cad;
   std::vector<std::string> bases;
   bool is_forced = false;
@@ -42,7 +43,8 @@ inline constexpr const char* kUnfinishedPlan = "unfinished_plan.json";
 
 /// Plans CAD files or a scene, writes scene.toml, the scene files of subassemblies, meshes, plan.json,
 /// plan.dot and plan.svg, and prints the plan and its faults. Unless --deflection is given, CAD parts with
-/// very many triangles are read with a greater deflection, which is reported.
+/// very many triangles are read with a greater deflection, which is reported. Writes the instruction book
+/// last, so that a failure of the book loses no other result.
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar);
 
 /// The least clearance on the path of each part of a scene file, from the plan.json in the same folder.

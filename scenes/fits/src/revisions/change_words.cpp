@@ -28,8 +28,9 @@ std::string preciseDirection(const Vec3& direction) {
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(direction[axis]) > 1 - kAligned * kAligned)
       return std::string(direction[axis] > 0 ? "+" : "-") + "xyz"[axis];
-  return "(" + numberWords(direction.x(), "%.3f, ") + numberWords(direction.y(), "%.3f, ") +
-         numberWords(direction.z(), "%.3f)");
+  std::string out = "(";
+  for (int axis = 0; axis < 3; ++axis) out += numberWords(direction[axis], axis < 2 ? "%.3f, " : "%.3f)");
+  return out;
 }
 
 std::string verdictText(Verdict verdict) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -58,21 +57,6 @@ std::size_t PlanResult::enclosed() const {
 
 namespace {
 
-/// Distance along d until a moving box has left another box; 0 if the moving box never touches the other box.
-double leavingDistance(const Box& moving, const Box& held, const Vec3& d) {
-  constexpr double kAcross = 1e-9;  // rounding of a direction along an axis
-  double apart_m = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double ahead_m = held.max[axis] - moving.min[axis], behind_m = moving.max[axis] - held.min[axis];
-    if (std::abs(d[axis]) < kAcross) {
-      if (ahead_m < 0 || behind_m < 0) return 0;
-      continue;
-    }
-    apart_m = std::min(apart_m, std::max(0.0, d[axis] > 0 ? ahead_m : behind_m) / std::abs(d[axis]));
-  }
-  return apart_m;
-}
-
 /// Distance that parts move on their last leg until they have left the boxes of all held parts, plus half of
 /// their own length. The distance of a screw is measured from its target without turning: a hand starts the
 /// screw outside its mate and turns it onto its thread.
@@ -85,7 +69,7 @@ double leavingDistance(const PairMotions& motions, const Removal& removal,
     const PlacedSurface placed = displaced(motions.parts()[part], X_W);
     own_m = std::max(own_m, d.cwiseAbs().dot(placed.box_W.size()));
     for (const std::size_t h : held)
-      far_m = std::max(far_m, leavingDistance(placed.box_W, motions.parts()[h].box_W, d));
+      far_m = std::max(far_m, leavingDistance_m(placed.box_W, motions.parts()[h].box_W, d));
   }
   return far_m + 0.5 * own_m;
 }

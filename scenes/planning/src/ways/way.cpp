@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "motion/play.h"
@@ -14,6 +15,20 @@ std::vector<Pose> cornersOf(const Way& way) {
   for (std::size_t i = 0; i + 1 < way.legs.size(); ++i)
     corners.push_back(way.legs[i].motion.at(way.legs[i].s) * corners.back());
   return corners;
+}
+
+double leavingDistance_m(const Box& moving, const Box& held, const Vec3& d) {
+  constexpr double kAcross = 1e-9;  // rounding of a direction along an axis
+  double apart_m = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double ahead_m = held.max[axis] - moving.min[axis], behind_m = moving.max[axis] - held.min[axis];
+    if (std::abs(d[axis]) < kAcross) {
+      if (ahead_m < 0 || behind_m < 0) return 0;
+      continue;
+    }
+    apart_m = std::min(apart_m, std::max(0.0, d[axis] > 0 ? ahead_m : behind_m) / std::abs(d[axis]));
+  }
+  return apart_m;
 }
 
 bool stopsWay(const PairMotions& motions, std::size_t held, std::size_t part, const Way& way) {

@@ -33,6 +33,9 @@ struct Way {
 /// The poses at the ends of all legs but the last, as motions of the world; the first pose is the target.
 std::vector<Pose> cornersOf(const Way& way);
 
+/// Distance along d until a moving box has left another box; 0 if the moving box never touches the other box.
+double leavingDistance_m(const Box& moving, const Box& held, const Vec3& d);
+
 /// Whether a held part stops another part on its path.
 bool stopsWay(const PairMotions& motions, std::size_t held, std::size_t part, const Way& way);
 

@@ -63,10 +63,16 @@ std::function<int()> addPlan(CLI::App& command) {
   addCacheOptions(command, given->cad.cache);
   addPlanOptions(command, *given);
   command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
-  command.add_flag(
+  CLI::Option* const book = command.add_option(
+      "--book", given->book,
+      "write an instruction book (.html, or .pdf printed by Chromium): an exploded view with the parts list, "
+      "and a sheet for each step with picture, path, fits, play and hints");
+  book->type_name("FILE");
+  CLI::Option* const verify = command.add_flag(
       "--verify", given->is_verify,
       "plan nothing: check that the scene's paths lead through no part in place and keep the clearances of "
       "the plan.json in the scene's folder, and that each released part is carried by parts in place");
+  verify->excludes(book);
   addJsonOption(command, given->json);
   return [given] { return runPlan(*given); };
 }

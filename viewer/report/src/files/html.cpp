@@ -167,11 +167,15 @@ std::string figure(const std::string& file, const std::string& caption_html, con
          "<figcaption>" + caption_html + "</figcaption></figure>\n";
 }
 
-std::string page(const std::string& title, const std::string& body, const std::string& folder) {
+std::string pageStart(const std::string& title, const std::string& style) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-         escapeHtml(title) + "</title>\n<style>" + kStyleSheet + "</style>\n</head>\n<body>\n" +
-         (folder.empty() ? body : withPictures(withLinkedFiles(body, folder), folder)) + "</body>\n</html>\n";
+         escapeHtml(title) + "</title>\n<style>" + kStyleSheet + style + "</style>\n</head>\n<body>\n";
+}
+
+std::string page(const std::string& title, const std::string& body, const std::string& folder) {
+  return pageStart(title) + (folder.empty() ? body : withPictures(withLinkedFiles(body, folder), folder)) +
+         kPageEnd;
 }
 
 }  // namespace html

@@ -36,6 +36,11 @@ std::string facts(const std::vector<std::pair<std::string, std::string>>& rows);
 /// the page.
 std::string figure(const std::string& file, const std::string& caption_html, const std::string& link = {});
 
+/// A page that is written in pieces: its start up to the body, and its end.
+/// @param style  style sheet of this page, after that of all pages
+std::string pageStart(const std::string& title, const std::string& style = {});
+inline constexpr const char* kPageEnd = "</body>\n</html>\n";
+
 /// A whole page with the given body. Pictures (PNG) from `folder` that the page shows, and tables and
 /// drawings (CSV, SVG) that it links to, are embedded, so that the page can be sent without the folder.
 std::string page(const std::string& title, const std::string& body, const std::string& folder = {});

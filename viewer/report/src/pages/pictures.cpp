@@ -16,9 +16,6 @@ namespace {
 
 using html::format;
 
-const Vec3 kToViewer(0.75, -1.25,
-                     0.85);  // the view is from the front, right and above, as in assembly drawings
-
 class PictureSet {
  public:
   PictureSet(const scenes::Scene& scene, const scenes::AssembleResult& result, std::string dir,

@@ -11,6 +11,9 @@
 
 namespace vps::viewer {
 
+/// Direction to the viewer: from the front, right and above, as in assembly drawings.
+inline const Vec3 kToViewer(0.75, -1.25, 0.85);
+
 /// File names relative to the report; empty for a missing picture.
 struct StepPictures {
   std::string start, contact, end;

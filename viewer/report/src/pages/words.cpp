@@ -21,6 +21,27 @@ std::string partsWith(const scenes::AssembleResult& result, scenes::Verdict verd
 
 }  // namespace
 
+std::string directionWords(const Vec3& d) {
+  constexpr double kAlong = 0.9995;  // within two degrees
+  constexpr std::array kAxes = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i)
+    if (std::abs(d[i]) > kAlong) return std::string(d[i] > 0 ? "+" : "-") + kAxes[std::size_t(i)];
+  const auto rounded = [](double x) {
+    constexpr double kZero = 0.005;
+    return html::format(std::abs(x) < kZero ? 0 : x, "%.2f");
+  };
+  return "(" + rounded(d.x()) + ", " + rounded(d.y()) + ", " + rounded(d.z()) + ")";
+}
+
+std::string listedNames(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 8;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
+    out += (i > 0 ? ", '" : "'") + names[i] + "'";
+  if (names.size() > kShown) out += " and " + std::to_string(names.size() - kShown) + " more";
+  return out;
+}
+
 const char* words(scenes::Verdict verdict) {
   return scenes::rowOf(verdict).words;
 }
@@ -83,18 +104,6 @@ std::string verdictLine(const scenes::AssembleResult& result) {
   return "Not shown: " + (parts.empty() ? std::string("the run ended before its last step") : parts) +
          (is_apart ? " was not taken off" : " was not brought home") +
          ", and nothing proves that this is impossible; " + count;
-}
-
-std::string directionWords(const Vec3& d) {
-  constexpr double kAlong = 0.9995;  // within two degrees
-  constexpr std::array kAxes = {"x", "y", "z"};
-  for (int i = 0; i < 3; ++i)
-    if (std::abs(d[i]) > kAlong) return std::string(d[i] > 0 ? "+" : "-") + kAxes[std::size_t(i)];
-  const auto rounded = [](double x) {
-    constexpr double kZero = 0.005;
-    return html::format(std::abs(x) < kZero ? 0 : x, "%.2f");
-  };
-  return "(" + rounded(d.x()) + ", " + rounded(d.y()) + ", " + rounded(d.z()) + ")";
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "vps/pose.h"
 #include "vps_scenes/fits/check_types.h"
@@ -11,6 +12,11 @@
 #include "vps_viewer/export.h"
 
 namespace vps::viewer {
+
+/// A unit vector in words: "+x", or "(0.71, 0.71, 0.00)".
+VPS_VIEWER_API std::string directionWords(const Vec3& d);
+/// "'a', 'b'"; of more than eight names the first eight "and 3 more".
+VPS_VIEWER_API std::string listedNames(const std::vector<std::string>& names);
 
 /// The words of a verdict: "fits", "blocked", "not shown".
 VPS_VIEWER_API const char* words(scenes::Verdict verdict);
@@ -48,9 +54,6 @@ VPS_VIEWER_API std::string playWords(double way, double error, double usual, dou
 /// Why the play of a part is uncertain, and by how much: "facets cross others as drawn; ..."; empty if the
 /// play is certain.
 VPS_VIEWER_API std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result);
-
-/// "+x", or "(0.71, 0.71, 0.00)".
-VPS_VIEWER_API std::string directionWords(const Vec3& direction);
 
 /// The answer to "do the parts go together?", unless it is yes for the parts as drawn: "can be assembled:
 /// free if 'bolt' moves by 0.050 mm along +x", "cannot be assembled: ...", "not shown: ..."; empty if the
