@@ -227,7 +227,7 @@ void appendFits(const FittedPart& key, const FittedPart& slot, std::vector<Check
 
 FitFaces fitFaces(const PartSurface& surface) {
   constexpr std::size_t kFlat = 400;  // assumed: more than the flat faces of a machined part
-  FitFaces faces{roundFaces(surface), {}, {}};
+  FitFaces faces{surface.round(), {}, {}};
   faces.threads = threadFaces(surface, faces.round);
   faces.flat = flatFaces(surface, faces.round, faces.threads, kFlat);
   return faces;

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "fits/faces.h"
 #include "pair/pair_measures.h"
 #include "vps/mesh_overlap.h"
 #include "vps_scenes/fits/check_types.h"
@@ -115,9 +114,8 @@ struct RoundAxis {
 /// turn, and measures how far its corners are from its surface then.
 std::optional<RoundAxis> roundAxisOf(const PartSurface& part, double most_off_m) {
   const RoundFace* largest = nullptr;
-  const std::vector<RoundFace> faces = roundFaces(part);
   const auto area = [](const RoundFace& face) { return face.radius_m * (face.to_m - face.from_m); };
-  for (const RoundFace& face : faces)
+  for (const RoundFace& face : part.round())
     if (largest == nullptr || area(face) > area(*largest)) largest = &face;
   if (largest == nullptr) return {};
   RoundAxis out{largest->axis, largest->p, 0};

@@ -87,7 +87,7 @@ bool isRoundAndFull(const PlacedSurface& shaft, const RoundFace& face, const Vec
 std::vector<RoundFace> facesOf(const PlacedSurface& part, bool is_bore, double size_m, const Vec3& at_W,
                                double beside_m) {
   const double same_m = 1e-9 * size_m;
-  std::vector<RoundFace> faces = roundFaces(*part.surface);
+  std::vector<RoundFace> faces = part.surface->round();
   std::erase_if(faces, [&](const RoundFace& face) {
     return face.is_bore != is_bore || std::abs(2 * face.radius_m - size_m) > same_m ||
            fromAxis(axisOf(part, face), at_W).norm() > beside_m + same_m;

@@ -15,24 +15,6 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-using Vec2 = Eigen::Vector2d;
-
-/// Distance of the origin from a triangle of the plane, which may have no area.
-double originTo(const std::array<Vec2, 3>& corner) {
-  double nearest_m = kInfinite;
-  int left = 0, right = 0;
-  for (int i = 0; i < 3; ++i) {
-    const Vec2 &a = corner[std::size_t(i)], edge = corner[std::size_t((i + 1) % 3)] - a;
-    const double turn = edge.x() * a.y() - edge.y() * a.x();
-    if (turn > 0) ++left;
-    if (turn < 0) ++right;
-    const double length2 = edge.squaredNorm();
-    const double share = length2 > 0 ? std::clamp(-a.dot(edge) / length2, 0.0, 1.0) : 0.0;
-    nearest_m = std::min(nearest_m, (a + share * edge).norm());
-  }
-  return left == 3 || right == 3 ? 0 : nearest_m;
-}
-
 }  // namespace
 
 PointAtSolid::PointAtSolid(const PartSurface& solid, const Vec3& p) : solid_(solid), p_(p), q_(p) {
@@ -81,14 +63,14 @@ double PointAtSolid::byCylinder(double moved_m, double beyond_m, std::size_t& wo
   bool is_whole = true;
   solid_.tree().forEach([&](const Box& box) { return is_whole && overlap(box, reach); },
                         [&](std::uint32_t i) {
-                          std::array<Vec2, 3> across;
+                          std::array<Eigen::Vector2d, 3> across;
                           double low = kInfinite, high = -kInfinite;
                           for (std::size_t k = 0; k < 3; ++k) {
                             const Vec3 r = solid_.triangle(i)[k] - q_;
                             across[k] = {r.dot(x), r.dot(y)};
                             low = std::min(low, r.dot(n_)), high = std::max(high, r.dot(n_));
                           }
-                          if (originTo(across) > wide_m) return;
+                          if (distanceOfOrigin(across) > wide_m) return;
                           heights.emplace_back(high, low);
                           is_whole = heights.size() < kMostFacets;
                         });

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface/part_surface.h"
-#include "vps/stoppable.h"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <tuple>
+
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
@@ -38,6 +39,8 @@ PartSurface::PartSurface(std::shared_ptr<const Solid> solid, std::optional<doubl
       neighbours_(neighboursOf(overlap_.mesh())),
       most_chord_m_(chord_m) {
   estimateChords();
+  round_ = roundFaces(*this);
+  measureRoundChords();
   cracks_ = cracksOf(mesh(), neighbours_, tree_);
   findPlanes();
   findPatches();
@@ -152,11 +155,30 @@ void PartSurface::estimateChords() {
     for (double& chord_m : chord_m_) chord_m = std::min(chord_m, *most_chord_m_);
 }
 
+// The fitted cylinder tells how far a facet is inside it, however its neighbours are divided.
+void PartSurface::measureRoundChords() {
+  is_round_.assign(mesh().triangles.size(), false);
+  for (const RoundFace& face : round_) {
+    const Vec3 u = face.axis.unitOrthogonal(), v = face.axis.cross(u);
+    for (const std::uint32_t i : face.facets) {
+      std::array<Eigen::Vector2d, 3> across;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 r = triangle(i)[k] - face.p;
+        across[k] = {u.dot(r), v.dot(r)};
+      }
+      const double chord_m = face.residual_m + std::max(0.0, face.radius_m - distanceOfOrigin(across));
+      chord_m_[i] = most_chord_m_ ? std::min(chord_m, *most_chord_m_) : chord_m;
+      is_round_[i] = true;
+    }
+  }
+}
+
 // A strip of width w covers at most twice the angle theta to its neighbour, which may be much narrower. The
 // strip is therefore at most w theta / 4 inside the curve.
 double PartSurface::chordBound_m(std::uint32_t i) const {
   if (chord_m_[i] == 0) return 0;
   if (most_chord_m_) return *most_chord_m_;
+  if (is_round_[i]) return chord_m_[i];
   double bound_m = 0;
   for (int e = 0; e < 3; ++e) {
     const std::uint32_t other = neighbours_[i][e];

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "surface/round_face.h"
 #include "surface/triangle_gap.h"
 #include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh.h"
@@ -80,10 +81,14 @@ class PartSurface {
   /// Whether the surface encloses a volume and has no holes.
   [[nodiscard]] bool isClosed() const { return no_inside_.empty() && solid().report().isClosed(); }
 
-  /// Greatest distance of a facet from the curved face that it approximates, as estimated.
+  /// The cylindrical faces, see roundFaces().
+  [[nodiscard]] const std::vector<RoundFace>& round() const { return round_; }
+
+  /// Greatest distance of a facet from the curved face that it approximates: for a facet of a cylindrical
+  /// face, its distance from the fitted cylinder; for other facets, estimated from the angles between them.
   [[nodiscard]] double chord_m(std::uint32_t i) const { return chord_m_[i]; }
-  /// Upper bound of chord_m() that also holds where facets of one face differ in width. The bound is zero for
-  /// flat faces only. O(1).
+  /// Upper bound of chord_m() that also holds where facets of one face differ in width; equal to it for
+  /// facets of a cylindrical face. The bound is zero for flat faces only. O(1).
   [[nodiscard]] double chordBound_m(std::uint32_t i) const;
   /// The greatest chord_m() of the facets whose boxes meet the given box.
   [[nodiscard]] double chordIn(const Box& box_P) const;
@@ -93,6 +98,7 @@ class PartSurface {
 
  private:
   void estimateChords();
+  void measureRoundChords();
   void findPlanes();
   void findPatches();
   void tellInside();
@@ -103,6 +109,8 @@ class PartSurface {
   std::vector<Crack> cracks_;
   std::optional<double> most_chord_m_;
   std::vector<double> chord_m_;
+  std::vector<RoundFace> round_;
+  std::vector<bool> is_round_;  // by facet: whether it belongs to a face of round_
   std::vector<NodePlane> planes_;
   std::vector<Vec3> patches_;
   std::string no_inside_;

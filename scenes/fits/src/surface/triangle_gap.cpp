@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace vps::scenes {
@@ -83,6 +84,21 @@ TriangleGap triangleGap(const Triangle& a, const Triangle& b) {
     if (const auto x = crossing(b[i], b[(i + 1) % 3], a)) return {0, *x, *x, 0, 1 + i};
   }
   return best;
+}
+
+double distanceOfOrigin(const std::array<Eigen::Vector2d, 3>& corners) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  int left = 0, right = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector2d &a = corners[std::size_t(i)], edge = corners[std::size_t((i + 1) % 3)] - a;
+    const double turn = edge.x() * a.y() - edge.y() * a.x();
+    if (turn > 0) ++left;
+    if (turn < 0) ++right;
+    const double length2 = edge.squaredNorm();
+    const double share = length2 > 0 ? std::clamp(-a.dot(edge) / length2, 0.0, 1.0) : 0.0;
+    nearest_m = std::min(nearest_m, (a + share * edge).norm());
+  }
+  return left == 3 || right == 3 ? 0 : nearest_m;
 }
 
 }  // namespace vps::scenes

@@ -26,4 +26,7 @@ TriangleGap triangleGap(const Triangle& a, const Triangle& b);
 /// Collision Detection, section 5.1.9.
 std::array<double, 2> nearestOfSegments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/// Distance of the origin of the plane from a triangle, which may have no area; 0 inside.
+double distanceOfOrigin(const std::array<Eigen::Vector2d, 3>& corners);
+
 }  // namespace vps::scenes

@@ -44,7 +44,7 @@ std::optional<Resized> thinner(const PlacedSurface& shaft, const CheckedFit& fit
   const Vec3 axis_P = shaft.X_WP.R.transpose() * fit.axis_W, at_P = shaft.X_WP.inverse() * fit.at_W;
   const double radius_m = 0.5 * fit.shaft_m, same_m = 1e-5 * fit.shaft_m + fit.error_m;
   std::optional<Resized> out;
-  for (const RoundFace& face : roundFaces(*shaft.surface)) {
+  for (const RoundFace& face : shaft.surface->round()) {
     const Vec3 r = at_P - face.p;
     const bool is_on_axis = std::abs(face.axis.dot(axis_P)) > 0.999 &&
                             (r - face.axis.dot(r) * face.axis).norm() <= 1e-3 * fit.shaft_m;

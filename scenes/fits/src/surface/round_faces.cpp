@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fits/faces.h"
-#include "vps/stoppable.h"
+#include "surface/round_face.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+
+#include "surface/part_surface.h"
+#include "vps/stoppable.h"
 
 namespace vps::scenes {
 
