@@ -162,7 +162,10 @@ TEST(BookPage, APartWithoutAPathIsTold) {
   scenes::PlannedAssembly& whole = plan.assemblies.front();
   whole.steps.clear();
   whole.fixed.emplace_back("peg <1>");
-  whole.blocked = {{"peg <1>", {"hole"}, false}};
+  whole.blocked.emplace_back();
+  whole.blocked.back().name = "peg <1>";
+  whole.blocked.back().by = {"hole"};
+  whole.blocked.back().is_searched = false;
   const std::string page = wordsOnly(pegBook(plan));
   for (const char* words : {"No path was found for 1 part", "&#39;peg &lt;1&gt;&#39;: no path was found",
                             "stopped by &#39;hole&#39;", "ended at its limit"})

@@ -36,7 +36,7 @@ struct Flank {
 
 // Least |n . axis| of a flank's normal, which is at most 81 degrees from the axis.
 constexpr double kLeastSlope = 0.15;
-constexpr double kLeastFacing = 0.05;  // least radial part of a flank's normal
+constexpr double kLeastFlank = 0.05;  // least radial part of a flank's normal
 
 /// A facet, with data that do not depend on an axis.
 struct Facet {
@@ -70,7 +70,7 @@ class FlankFacets {
     for (const Facet& facet : all_) {
       const double slope = facet.n.dot(axis);
       if (std::abs(slope) >= kLeastSlope - kMargin &&
-          (facet.n - slope * axis).norm() >= kLeastFacing - kMargin)
+          (facet.n - slope * axis).norm() >= kLeastFlank - kMargin)
         direction.facets.push_back(facet);
     }
     return direction.facets;
@@ -100,7 +100,7 @@ std::vector<Flank> flanksAround(FlankFacets& facets, const Line& line, bool is_i
     const double radius_m = r.norm();
     if (!(radius_m > 0)) continue;
     const double facing = facet.n.dot(r) / radius_m * (is_inside ? -1 : 1);
-    if (facing < kLeastFacing) continue;
+    if (facing < kLeastFlank) continue;
     const double lead_m = -kTurn_rad * facet.n.dot(line.axis.cross(r)) / slope;
     if (std::abs(lead_m) < kLeastLead * kTurn_rad * radius_m ||
         std::abs(lead_m) > kMostLead * kTurn_rad * radius_m)

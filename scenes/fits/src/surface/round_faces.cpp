@@ -101,9 +101,15 @@ class Finder {
     std::optional<Cylinder> guess = guessed(facets);
     if (!guess) return std::nullopt;
     // In files with few digits, corners deviate more from the circle. The face's residual then shows the
-    // deviation.
-    for (const double within_m : {tolerance_m_, kCoarse * guess->radius_m})
-      if (std::optional<RoundFace> face = grown(seed, *guess, within_m)) return face;
+    // deviation. The normals of uneven facets lean along the axis, so the axis of the guess may be wrong,
+    // while their corners lie on the cylinder all the same.
+    Cylinder refined = *guess;
+    const bool is_refined = refine(refined, facets);
+    for (const Cylinder* from : {&*guess, &refined})
+      for (const double within_m : {tolerance_m_, kCoarse * guess->radius_m}) {
+        if (from == &refined && !is_refined) continue;
+        if (std::optional<RoundFace> face = grown(seed, *from, within_m)) return face;
+      }
     return std::nullopt;
   }
 

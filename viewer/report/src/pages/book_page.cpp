@@ -147,13 +147,18 @@ class BookWriter {
     out_ << "<section class=\"sheet\" id=\"rest\"><h2>Parts without a path</h2>\n";
     if (book_.blocked.empty()) out_ << "<p>A path was found for every part.</p>\n";
     if (!book_.blocked.empty()) {
-      out_ << "<p>No path was found for these parts, which does not prove that there is none. They are in "
-              "place "
-              "from the beginning in the pictures.</p>\n<ul>\n";
+      out_ << "<p>No path was found for these parts. They are in place from the beginning in the pictures. "
+              "That no path "
+              "was found does not prove that there is none, where nothing else is said.</p>\n<ul>\n";
       for (const scenes::BlockedPart& part : book_.blocked) {
         std::string line = "'" + part.name + "': no path was found";
-        if (!part.by.empty()) line += "; in straight directions it is stopped by " + listedNames(part.by);
-        if (!part.is_searched) line += "; the search for paths of several legs ended at its limit";
+        if (!part.enclosed_by.empty())
+          line = "'" + part.name + "' cannot be taken off '" + part.enclosed_by +
+                 "' on any path, which is proven";
+        else if (!part.by.empty())
+          line += "; in straight directions it is stopped by " + listedNames(part.by);
+        if (!part.is_searched && part.enclosed_by.empty())
+          line += "; the search for paths of several legs ended at its limit";
         out_ << "<li>" << escapeHtml(line) << ".</li>\n";
       }
       out_ << "</ul>\n";

@@ -19,7 +19,12 @@ std::string px(double value) {
 
 std::string pointList(const std::vector<Pixel>& points) {
   std::string out;
-  for (const Pixel& p : points) out += (out.empty() ? "" : " ") + px(p[0]) + "," + px(p[1]);
+  for (const Pixel& p : points) {
+    if (!out.empty()) out += ' ';
+    out += px(p[0]);
+    out += ',';
+    out += px(p[1]);
+  }
   return out;
 }
 

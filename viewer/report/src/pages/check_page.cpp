@@ -27,7 +27,7 @@ std::string rules(const scenes::CheckResult& result) {
   std::string out =
       "<h2>Rules</h2>\n<p>A rule is not decided for a pair where the bound is within the error of the "
       "measured number. A clearance is negative by the depth of an overlap.</p>\n";
-  if (!result.rules.empty()) out += fieldTable(result.rules, scenes::kRuleOutcomeFields);
+  if (!result.rules.empty()) out += fieldTableOnPage(result.rules, scenes::kRuleOutcomeFields);
   for (const std::string& note : ruleNotes(result)) out += "<p>" + escapeHtml(note) + ".</p>\n";
   return out;
 }
@@ -172,8 +172,8 @@ std::string checkSection(const scenes::CheckResult& result) {
   const bool has_play =
       std::ranges::any_of(result.parts, [](const auto& part) { return part.play.has_value(); });
   return rules(result) + pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result) +
-         planeSectionPictures(result) + sectionPictures(result) + clearancePictures(result) + (has_play ? play(result) : "") +
-         meshes(result);
+         planeSectionPictures(result) + sectionPictures(result) + clearancePictures(result) +
+         (has_play ? play(result) : "") + meshes(result);
 }
 
 std::string checkPage(const scenes::CheckResult& result, const std::string& after_answer) {
