@@ -190,7 +190,9 @@ TEST(Book, PartsWithoutAPathAndPartsThatAreLeftOutAreTold) {
   PlannedAssembly& whole = plan.assemblies.front();
   whole.steps.pop_back();
   whole.fixed.push_back("lid");
-  whole.blocked = {{"lid", {"post_a"}, true}};
+  whole.blocked.emplace_back();
+  whole.blocked.back().name = "lid";
+  whole.blocked.back().by = {"post_a"};
   plan.choices.resize(1);
   plan.choices[0].left_out = "seal";
   plan.choices[0].words = "'seal' seems to be drawn undeformed";
