@@ -78,7 +78,7 @@ std::string benchText(const scenes::PlannedAssembly& assembly) {
 std::string blockedText(const scenes::BlockedPart& blocked) {
   if (!blocked.enclosed_by.empty())
     return "'" + blocked.name + "' cannot be taken off '" + blocked.enclosed_by +
-           "' on any path, which is proven: between the two there is room for " +
+           "' on any path, which is proven for rigid parts: between the two there is room for " +
            fixed(1e3 * blocked.moves_m, 3) + " mm" + " and " +
            fixed(blocked.turns_rad * 180 / std::numbers::pi, 1) +
            " degrees at most, beyond which they overlap everywhere.\n";

@@ -138,7 +138,7 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
 
 double faceError_m(const PlacedSurface& part) {
   const PartSurface& surface = *part.surface;
-  return surface.chordIn(surface.box()) + surface.crackIn(surface.box()) + uncertainty_m(part);
+  return surface.mostChordBound_m() + surface.crackIn(surface.box()) + uncertainty_m(part);
 }
 
 double meshError_m(const PlacedSurface& a, const PlacedSurface& b) {

@@ -122,7 +122,8 @@ std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface
 double faceError_m(const PlacedSurface& part);
 
 /// Bound of the distance of two meshes from their true faces anywhere, added: the greatest distance of facets
-/// from the curved faces that they approximate, widths of cracks, and rounding. The error of a pair's depth
+/// from the curved faces that they approximate (PartSurface::chordBound_m(); a prism of sixteen sides or
+/// fewer counts as a prism, and its error as 0), widths of cracks, and rounding. The error of a pair's depth
 /// can be smaller, since it counts only the error near the overlap. Infinite if a mesh has no inside or is
 /// not closed, because a depth in such a mesh has no bound.
 double meshError_m(const PlacedSurface& a, const PlacedSurface& b);

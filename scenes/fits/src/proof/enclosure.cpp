@@ -2,7 +2,9 @@
 #include "proof/enclosure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -110,8 +112,13 @@ struct RoundAxis {
   double off_m = 0;
 };
 
-/// Turns the part about the axis of its largest round face by some angles, of which none is a part of a whole
-/// turn, and measures how far its corners are from its surface then.
+/// Measures how far a part is from being round about the axis of its largest round face, by the shadow of its
+/// facets on a half-plane with the coordinates r (distance from the axis) and z (along the axis). A ring (r,
+/// z) outside all shadows meets no facet, so the whole ring is inside the part or outside. All that a turn
+/// can change thus lies in the shadows. A facet across whose corners the axis is seen under the angle a, and
+/// whose corners' (r, z) lie within `across` of a line, has its shadow within across + r (1 - cos(a / 2)) of
+/// this line, since r is a convex function of the facet's points and at least the mean of the corners' r
+/// times cos(a / 2). Walls along the axis have wide shadows.
 std::optional<RoundAxis> roundAxisOf(const PartSurface& part, double most_off_m) {
   const RoundFace* largest = nullptr;
   const auto area = [](const RoundFace& face) { return face.radius_m * (face.to_m - face.from_m); };
@@ -119,13 +126,36 @@ std::optional<RoundAxis> roundAxisOf(const PartSurface& part, double most_off_m)
     if (largest == nullptr || area(face) > area(*largest)) largest = &face;
   if (largest == nullptr) return {};
   RoundAxis out{largest->axis, largest->p, 0};
-  for (const double angle_rad : {0.1, 0.37, 1.0, 1.9, 2.8}) {
-    const Mat3 R = rotationFromVector(angle_rad * out.axis);
-    for (const Vec3& p : part.mesh().vertices) {
-      const Vec3 turned = out.p + R * (p - out.p);
-      out.off_m = std::max(out.off_m, std::abs(part.solid().signedDistance(turned)));
-      if (out.off_m > most_off_m) return {};
+  constexpr double kOnAxis_m = 1e-9, kAlong = 1e-12;
+  for (std::uint32_t i = 0; i < part.mesh().triangles.size(); ++i) {
+    std::array<Eigen::Vector2d, 3> shadow;
+    std::array<Vec3, 3> out_of_axis;
+    double most_r_m = 0, least_cos = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 r = part.triangle(i)[k] - out.p;
+      out_of_axis[k] = r - out.axis.dot(r) * out.axis;
+      shadow[k] = {out_of_axis[k].norm(), out.axis.dot(r)};
+      most_r_m = std::max(most_r_m, shadow[k].x());
     }
+    double across_m = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+      const Eigen::Vector2d edge = shadow[next] - shadow[k], side = shadow[last] - shadow[k];
+      const double length_m = edge.norm();
+      const double off_m =
+          length_m > 0 ? std::abs(edge.x() * side.y() - edge.y() * side.x()) / length_m : side.norm();
+      across_m = std::min(across_m, off_m);
+      if (shadow[k].x() > kOnAxis_m && shadow[next].x() > kOnAxis_m)
+        least_cos =
+            std::min(least_cos, out_of_axis[k].dot(out_of_axis[next]) / (shadow[k].x() * shadow[next].x()));
+    }
+    // A facet across the axis has its shadow on one line z. Corners that are seen under more than half a turn
+    // in all, which pairs of corners do not tell, are a facet around the axis.
+    const bool is_across = std::abs(part.normal(i).dot(out.axis)) > 1 - kAlong;
+    const double dip_m =
+        is_across ? 0 : most_r_m * (1 - std::sqrt(0.5 * (1 + std::clamp(least_cos, -1.0, 1.0))));
+    out.off_m = std::max(out.off_m, 2 * (across_m + dip_m));
+    if (out.off_m > most_off_m) return {};
   }
   return out;
 }
@@ -149,6 +179,8 @@ Enclosure enclosureOf(const PartSurface& part, const Pose& X_WP, std::span<const
 Enclosure enclosureOfPair(const PlacedSurface& a, const PlacedSurface& b, std::size_t most_work) {
   const PlacedSurface *part = &a, *other = &b;
   double error_m = meshError_m(a, b) + kContactDepth_m;
+  if (a.drawn->allow_overlap || b.drawn->allow_overlap) return {};
+  error_m += std::max(a.drawn->press_fit_m, b.drawn->press_fit_m);
   const double drawn_m = deepestOverlap(a.surface->overlap(), a.X_WP, b.surface->overlap(), b.X_WP).depth_m;
   if (drawn_m > error_m || !a.surface->isClosed() || !b.surface->isClosed()) return {};
   if (b.surface->box().size().norm() < a.surface->box().size().norm()) std::swap(part, other);

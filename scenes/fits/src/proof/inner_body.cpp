@@ -29,6 +29,7 @@ PointAtSolid::PointAtSolid(const PartSurface& solid, const Vec3& p) : solid_(sol
 }
 
 GapBound PointAtSolid::bound(double moved_m, double beyond_m, std::size_t& work) const {
+  if (!(n_.squaredNorm() > 0.5)) return {kInfinite, Vec3::UnitZ()};  // a facet without area has no normal
   return {std::min(byBalls(moved_m, work), byCylinder(moved_m, beyond_m, work)), n_};
 }
 

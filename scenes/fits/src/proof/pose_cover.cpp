@@ -319,8 +319,10 @@ class CoverSearch {
     SixNumbers size = cell.half, mean = SixNumbers::Zero();
     size.tail<3>() *= 0.5 * part_.box().size().norm();
     for (std::size_t i = 0; i < found.weight.size(); ++i) mean += found.weight[i] * gaps[i].gap.slope_m;
+    for (int k = 0; k < 6; ++k)
+      if (cell.half[k] > 0) size[k] += std::abs(mean[k]);
     int axis = 0;
-    (size + mean.cwiseAbs()).maxCoeff(&axis);
+    size.maxCoeff(&axis);
     return axis;
   }
 
@@ -361,6 +363,10 @@ Pose poseAfter(const Pose& X_WP, const Vec3& at_W, const SixNumbers& motion) {
 
 PoseCover coverPoses(const PartSurface& part, const Pose& X_WP, std::span<const Obstacle> obstacles,
                      const PoseSet& set, std::size_t most_work) {
+  const auto hasInside = [](const PartSurface& of) { return of.isClosed() && !of.solid().isSheet(); };
+  if (!hasInside(part)) return {};
+  for (const Obstacle& obstacle : obstacles)
+    if (!hasInside(*obstacle.surface)) return {};
   return CoverSearch(part, X_WP, obstacles, set, most_work).search();
 }
 

@@ -54,7 +54,8 @@ struct PoseCover {
 /// the middle of each cell that is not proven, the overlap is measured exactly; a deepest point that no
 /// sample shows becomes a sample. Deterministic.
 ///
-/// Rotations of the set are limited to about 0.6 rad; nothing is proven for larger ones.
+/// Nothing is proven for surfaces that are not closed. Rotations of the set are limited to about 0.6 rad;
+/// nothing is proven for larger ones.
 /// @param most_work limit of PoseCover::work
 PoseCover coverPoses(const PartSurface& part, const Pose& X_WP, std::span<const Obstacle> obstacles,
                      const PoseSet& set, std::size_t most_work);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "vps/box.h"
 #include "vps/stoppable.h"
@@ -34,6 +35,25 @@ std::vector<std::array<std::uint32_t, 3>> neighboursOf(const Mesh& mesh) {
     out[b.triangle][b.edge] = a.triangle;
   }
   return out;
+}
+
+bool isBalanced(const Mesh& mesh) {
+  std::vector<std::pair<std::uint64_t, int>>
+      sides;  // an edge by its ends, and the direction of a facet's side along it
+  sides.reserve(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles)
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto [low, high] = std::minmax(t[e], t[(e + 1) % 3]);
+      sides.emplace_back(std::uint64_t{low} << 32 | high, t[e] == low ? 1 : -1);
+    }
+  std::ranges::sort(sides);
+  for (std::size_t i = 0; i < sides.size();) {
+    int sum = 0;
+    for (const std::uint64_t edge = sides[i].first; i < sides.size() && sides[i].first == edge; ++i)
+      sum += sides[i].second;
+    if (sum != 0) return false;
+  }
+  return true;
 }
 
 std::vector<Crack> cracksOf(const Mesh& mesh, const std::vector<std::array<std::uint32_t, 3>>& neighbours,

@@ -41,11 +41,14 @@ PartSurface::PartSurface(std::shared_ptr<const Solid> solid, std::optional<doubl
   estimateChords();
   round_ = roundFaces(*this);
   measureRoundChords();
+  for (std::uint32_t i = 0; i < chord_m_.size(); ++i)
+    most_bound_m_ = std::max(most_bound_m_, chordBound_m(i));
   cracks_ = cracksOf(mesh(), neighbours_, tree_);
   findPlanes();
   findPatches();
   gatherNormals();
   tellInside();
+  is_balanced_ = isBalanced(mesh());
 }
 
 // A plate must be thicker than 1 um, since a depth in a plate of thickness t is at most t / 2.
@@ -177,8 +180,8 @@ void PartSurface::measureRoundChords() {
 // strip is therefore at most w theta / 4 inside the curve.
 double PartSurface::chordBound_m(std::uint32_t i) const {
   if (chord_m_[i] == 0) return 0;
-  if (most_chord_m_) return *most_chord_m_;
   if (is_round_[i]) return chord_m_[i];
+  if (most_chord_m_) return *most_chord_m_;
   double bound_m = 0;
   for (int e = 0; e < 3; ++e) {
     const std::uint32_t other = neighbours_[i][e];

@@ -30,6 +30,10 @@ struct Crack {
   double width_m;  ///< distance of the corner from the nearest other open edge
 };
 
+/// Whether as many facets pass each edge in one direction as in the other. Such a surface has no border, so
+/// that its winding number is an integer that changes at facets only. O(n log n).
+bool isBalanced(const Mesh& mesh);
+
 /// Finds the cracks of a mesh. A crack is narrow compared with the edges along it and with the part; a wider
 /// gap is a hole. A corner at which a crack ends is not listed. O(n log n).
 std::vector<Crack> cracksOf(const Mesh& mesh, const std::vector<std::array<std::uint32_t, 3>>& neighbours,
@@ -78,8 +82,8 @@ class PartSurface {
 
   /// The reason why the surface, or a part of it, encloses no volume; empty if it is a solid.
   [[nodiscard]] const std::string& noInside() const { return no_inside_; }
-  /// Whether the surface encloses a volume and has no holes.
-  [[nodiscard]] bool isClosed() const { return no_inside_.empty() && solid().report().isClosed(); }
+  /// Whether the surface, after its repair, encloses a volume and has no border.
+  [[nodiscard]] bool isClosed() const { return no_inside_.empty() && is_balanced_; }
 
   /// The cylindrical faces, see roundFaces().
   [[nodiscard]] const std::vector<RoundFace>& round() const { return round_; }
@@ -90,6 +94,8 @@ class PartSurface {
   /// Upper bound of chord_m() that also holds where facets of one face differ in width; equal to it for
   /// facets of a cylindrical face. The bound is zero for flat faces only. O(1).
   [[nodiscard]] double chordBound_m(std::uint32_t i) const;
+  /// The greatest chordBound_m() of all facets. O(1).
+  [[nodiscard]] double mostChordBound_m() const { return most_bound_m_; }
   /// The greatest chord_m() of the facets whose boxes meet the given box.
   [[nodiscard]] double chordIn(const Box& box_P) const;
 
@@ -109,11 +115,13 @@ class PartSurface {
   std::vector<Crack> cracks_;
   std::optional<double> most_chord_m_;
   std::vector<double> chord_m_;
+  double most_bound_m_ = 0;
   std::vector<RoundFace> round_;
   std::vector<bool> is_round_;  // by facet: whether it belongs to a face of round_
   std::vector<NodePlane> planes_;
   std::vector<Vec3> patches_;
   std::string no_inside_;
+  bool is_balanced_ = false;  // isBalanced()
   std::vector<Vec3> around_;
   std::vector<std::uint32_t> first_around_;  // by vertex: first index in around_; and the end
 };

@@ -10,8 +10,9 @@
 namespace vps::scenes {
 
 /// Tries to prove of each part without a path that it cannot leave one of the parts that stop it, and sets
-/// BlockedPart::enclosed_by. A part that cannot leave one part alone cannot leave the assembly in any order.
-/// At most about a minute of one core for all parts, on all cores. Deterministic.
+/// BlockedPart::enclosed_by. Rigid parts are assumed: a part that cannot leave one part alone cannot leave
+/// the assembly in any order. Nothing is proven for parts that are like a wire. At most about a minute of one
+/// core for all parts, on all cores. Deterministic.
 void proveEnclosed(const std::vector<PlacedSurface>& parts, std::vector<PlannedAssembly>& assemblies,
                    const Progress& progress);
 

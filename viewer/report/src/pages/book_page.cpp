@@ -154,7 +154,7 @@ class BookWriter {
         std::string line = "'" + part.name + "': no path was found";
         if (!part.enclosed_by.empty())
           line = "'" + part.name + "' cannot be taken off '" + part.enclosed_by +
-                 "' on any path, which is proven";
+                 "' on any path, which is proven for rigid parts";
         else if (!part.by.empty())
           line += "; in straight directions it is stopped by " + listedNames(part.by);
         if (!part.is_searched && part.enclosed_by.empty())

@@ -55,7 +55,8 @@ inline constexpr auto kBlockedPartFields = std::make_tuple(
     field("is_searched", &BlockedPart::is_searched,
           "false: the search for paths of several legs ended at its work limit"),
     field("enclosed_by", &BlockedPart::enclosed_by,
-          "a part that `name` is proven to be unable to leave on any path; empty: nothing is proven, "
+          "a part that `name`, as a rigid body, is proven to be unable to leave on any path; empty: nothing "
+          "is proven, "
           "and a path that the search did not find may exist"),
     field("moves_m", &BlockedPart::moves_m,
           "with `enclosed_by`: upper bound of how far the middle of the moved part can move"),
