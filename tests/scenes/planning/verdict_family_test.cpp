@@ -98,7 +98,7 @@ Parts twoTonguesCase(test::Random& draw, double by_m) {
 /// under the lip.
 Parts slideCase(test::Random& draw, double by_m) {
   const double play_m = draw.logUniform(40 * kUm, 200 * kUm);
-  return slideBeforeNub(play_m, play_m - by_m);
+  return slideBeforeNub(play_m, play_m + 5 * kUm - by_m);  // the slide is drawn 5 um above the floor
 }
 
 Parts coverCase(test::Random& draw, double by_m) {
