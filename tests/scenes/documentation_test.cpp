@@ -225,7 +225,8 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
           resultLines("moves[].", kPartMoveFields) + resultLines("rules[].", kRuleOutcomeFields) +
           resultLines("rule_counts[].", kRuleCountFields) + resultLines("places.", kCheckedPlacesFields) +
           resultLines("places.moved[].", kMovedPartFields) +
-          resultLines("places.groups[].", kCheckedGroupFields) + resultLines("against.", kRevisionFields) + resultLines("wall.", kCheckWallFields));
+          resultLines("places.groups[].", kCheckedGroupFields) + resultLines("against.", kRevisionFields) +
+          resultLines("wall.", kCheckWallFields));
   checkSection(readme, "plan",
                head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
                    resultLines("wall.", kPlanWallFields));

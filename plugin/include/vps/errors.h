@@ -65,8 +65,8 @@ inline const char* toText(Status status) {
 }
 
 /// Called from time to time with the name of the current work and the share done, 0 to 1. The function may be
-/// empty. Never called from the haptic loop. It may throw to end the work, is called on one thread at a time, but not
-/// always on the thread that asked for the work, and may repeat a report (see stoppable.h).
+/// empty. Never called from the haptic loop. It may throw to end the work, is called on one thread at a time,
+/// but not always on the thread that asked for the work, and may repeat a report (see stoppable.h).
 using Progress = std::function<void(std::string_view doing, double share)>;
 
 }  // namespace vps

@@ -14,8 +14,8 @@
 #include "vps/errors.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/fits/part_moves.h"
-#include "vps_scenes/fits/rules.h"
 #include "vps_scenes/fits/revisions.h"
+#include "vps_scenes/fits/rules.h"
 #include "vps_viewer/report/pages.h"
 
 namespace vps::viewer {

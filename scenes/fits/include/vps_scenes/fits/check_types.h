@@ -305,7 +305,7 @@ struct CheckResult {
   /// With has_sections: one section for each fit and each overlap, up to 60.
   std::vector<CheckedSection> sections;
   std::vector<PlaneSection> plane_sections;  ///< one for each of CheckSettings::planes
-  double near_m = 0;  ///< as in CheckSettings
+  double near_m = 0;                         ///< as in CheckSettings
   /// The patterns of CheckSettings.
   std::vector<PairPattern> between, ignored;
   /// Pairs that `between` and `ignored` left out, of those whose boxes are at most near_m apart.
