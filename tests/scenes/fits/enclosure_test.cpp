@@ -109,6 +109,18 @@ TEST(Enclosure, ASleeveWithASlotIsNotRound) {
   EXPECT_FALSE(isPairEnclosed({drawnAt("sleeve", sleeve), drawnAt("shaft", shaft)}));
 }
 
+// A bar in a round chamber turns by a quarter and leaves through a hole of its own shape. The base is round
+// outside and in its chamber, but not in the hole.
+TEST(Enclosure, ABarThatTurnsInARoundChamberLeavesThroughAHoleOfItsShape) {
+  const Polygon outline = search::regularPolygon(96, 10 * kMm);
+  Mesh base = search::makePrism(outline, {}, -8 * kMm, -3.05 * kMm);
+  append(base,
+         search::makePrism(outline, {search::regularPolygon(96, 3.0584 * kMm)}, -3.05 * kMm, 3.05 * kMm));
+  append(base, search::makePrism(outline, {boxOf(1.204 * kMm, 5.88 * kMm)}, 3.05 * kMm, 8 * kMm));
+  EXPECT_FALSE(
+      isPairEnclosed({drawnAt("base", base), drawnAt("bar", makeBox({5.876 * kMm, 1.2 * kMm, 6 * kMm}))}));
+}
+
 // A cone of strips of unequal width is farther from the true cone than the narrow strips tell. With 50 um of
 // true clearance the cones do not touch, though their facets cross by more than a hundred.
 TEST(Enclosure, FacetsOfUnequalWidthProveNothingAboutTheTrueFaces) {

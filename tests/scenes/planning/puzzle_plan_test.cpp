@@ -41,22 +41,22 @@ int expectTruth(const test::VoxelPuzzle& puzzle, std::uint64_t seed) {
 // right in all 433 cases. The tests run some of the 433 cases.
 TEST(PuzzlePlan, PiecesOfACubeComeApartIfAnExhaustiveSearchSaysSo) {
   int apart = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed)
+  for (std::uint64_t seed = 0; seed < 16; ++seed)
     apart += expectTruth(test::randomCube(3 + static_cast<int>(seed % 4), 3 + seed / 4 % 5, seed), seed);
-  EXPECT_GT(apart, 20);
-  EXPECT_LT(apart, 50);
+  EXPECT_GT(apart, 4);
+  EXPECT_LT(apart, 15);
 }
 
 TEST(PuzzlePlan, ABurrComesApartIfAnExhaustiveSearchSaysSo) {
   int apart = 0, puzzles = 0;
-  for (std::uint64_t seed = 0; puzzles < 30; ++seed) {
+  for (std::uint64_t seed = 0; puzzles < 8; ++seed) {
     const test::VoxelPuzzle puzzle = test::randomBurr(seed, 0.15 * static_cast<double>(seed % 4));
     if (!isConnected(puzzle)) continue;
     ++puzzles;
     apart += expectTruth(puzzle, seed);
   }
-  EXPECT_GT(apart, 10);
-  EXPECT_LT(apart, 25);
+  EXPECT_GT(apart, 1);
+  EXPECT_LT(apart, 8);
 }
 
 // Two bars of the burr lock each other, and leave the others together in two legs.

@@ -163,7 +163,7 @@ std::string freeWords(const std::vector<scenes::MovedPart>& moved) {
 std::string assemblyWords(const scenes::CheckResult& result) {
   switch (result.places.verdict) {
     case scenes::Verdict::Blocked:
-      return "cannot be assembled: " + result.places.reason;
+      return "cannot be assembled with its parts where they are drawn: " + result.places.reason;
     case scenes::Verdict::NotShown:
       return "whether the parts can be assembled is not shown: " + result.places.reason;
     case scenes::Verdict::Fits:
