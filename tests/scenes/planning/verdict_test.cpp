@@ -158,19 +158,30 @@ TEST(Verdict, APegDrawnIntoTheBottomOfItsBlindHoleStandsHigherUnlessItIsFarTooLo
 
 // A key that is 20 um too wide for its slot: no place without overlap is found, and the depth is too small
 // for a proof, since parts may be drawn that far off.
-TEST(Verdict, AnOverlapForWhichNoPlaceIsFoundIsBlockedAsDrawnAndSaysThatItIsNotProven) {
-  Mesh slot = block({-20 * kMm, -9 * kMm, -4 * kMm}, {20 * kMm, 9 * kMm, 0});
-  append(slot, block({-20 * kMm, 5 * kMm, 0}, {20 * kMm, 9 * kMm, 4 * kMm}));
-  append(slot, block({-20 * kMm, -9 * kMm, 0}, {20 * kMm, -5 * kMm, 4 * kMm}));
-  Scene scene =
-      sceneOf({scenePart("slot", slot, Vec3::Zero(), true),
-               scenePart("key", makeBox({16 * kMm, 10.02 * kMm, 3 * kMm}), {0, 0, 1.5 * kMm}, false)},
-              1 * kMm);
-  const StepResult step = checkDrawnTargets(scene, {}).front();
-  EXPECT_EQ(step.blocked_by, "slot");
-  EXPECT_EQ(step.moved_m, 0);
-  EXPECT_NE(step.overlap_doubt.find("nothing proves"), std::string::npos) << step.overlap_doubt;
-  EXPECT_EQ(assemble(scene).verdict, Verdict::Blocked);
+// A key that is 20 um wider than its slot. In one part the slot proves it; as two fixed walls, of which each
+// alone leaves room, nothing does.
+TEST(Verdict, AnOverlapForWhichNoPlaceIsFoundIsBlockedAsDrawnAndSaysWhetherItIsProven) {
+  const Mesh floor = block({-20 * kMm, -9 * kMm, -4 * kMm}, {20 * kMm, 9 * kMm, 0});
+  const Mesh left = block({-20 * kMm, 5 * kMm, 0}, {20 * kMm, 9 * kMm, 4 * kMm});
+  const Mesh right = block({-20 * kMm, -9 * kMm, 0}, {20 * kMm, -5 * kMm, 4 * kMm});
+  Mesh slot = floor;
+  append(slot, left);
+  append(slot, right);
+  const auto fixed = [](const std::string& name, const Mesh& mesh) {
+    return scenePart(name, mesh, Vec3::Zero(), true);
+  };
+  const ScenePart key = scenePart("key", makeBox({16 * kMm, 10.02 * kMm, 3 * kMm}), {0, 0, 1.5 * kMm}, false);
+  const auto drawnStep = [&](const std::vector<ScenePart>& parts) {
+    Scene scene = sceneOf(parts, 1 * kMm);
+    return checkDrawnTargets(scene, {}).front();
+  };
+  const StepResult proven = drawnStep({fixed("slot", slot), key});
+  EXPECT_EQ(proven.blocked_by, "slot");
+  EXPECT_EQ(proven.overlap_doubt, "");
+  const StepResult open = drawnStep({fixed("floor", floor), fixed("left", left), fixed("right", right), key});
+  EXPECT_NE(open.blocked_by, "");
+  EXPECT_EQ(open.moved_m, 0);
+  EXPECT_NE(open.overlap_doubt.find("nothing proves"), std::string::npos) << open.overlap_doubt;
 }
 
 // Parts that are laid out next to each other, as for printing, reach their targets, but the run proves
