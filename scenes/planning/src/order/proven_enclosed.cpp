@@ -12,7 +12,7 @@ namespace vps::scenes {
 namespace {
 
 // Limits of the work, in the unit of Enclosure::work, of which two or three million take a second.
-constexpr std::size_t kMostWorkOfPair = 12'000'000, kMostWork = 24'000'000;
+constexpr std::size_t kMostWorkOfPair = 10'000'000, kMostWork = 12'000'000;
 
 struct Question {
   BlockedPart* part;
