@@ -76,17 +76,13 @@ std::string benchText(const scenes::PlannedAssembly& assembly) {
 
 /// A part without a path, and what is proven of it.
 std::string blockedText(const scenes::BlockedPart& blocked) {
-  if (!blocked.enclosed_by.empty())
-    return "'" + blocked.name + "' cannot be taken off '" + blocked.enclosed_by +
-           "' on any path, which is proven for rigid parts: between the two there is room for " +
-           fixed(1e3 * blocked.moves_m, 3) + " mm" + " and " +
-           fixed(blocked.turns_rad * 180 / std::numbers::pi, 1) +
-           " degrees at most, beyond which they overlap everywhere.\n";
-  return "'" + blocked.name +
-         "' was not taken off: no path was found, which does not prove that there is none" +
-         (blocked.by.empty() ? std::string()
-                             : "; in straight directions it is stopped by " + listedNames(blocked.by)) +
-         (blocked.is_searched ? "" : "; the search for paths of several legs ended at its limit") + ".\n";
+  const std::string room = ": between the two there is room for " + fixed(1e3 * blocked.moves_m, 3) +
+                           " mm and " + fixed(blocked.turns_rad * 180 / std::numbers::pi, 1) +
+                           " degrees at most, beyond which they overlap everywhere";
+  return "'" + blocked.name + "'" +
+         withoutPathWords(blocked,
+                          " was not taken off: no path was found, which does not prove that there is none") +
+         (blocked.enclosed_by.empty() ? "" : room) + ".\n";
 }
 
 std::string assemblyTable(const scenes::PlannedAssembly& assembly) {

@@ -2,34 +2,15 @@
 #include "vps_scenes/fits/part_moves.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
-#include <string_view>
 
+#include "check/three_numbers.h"
 #include "scene/scene_file_keys.h"
 #include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {
-
-namespace {
-
-/// A direction from "x:y:z"; empty if the text is not three finite numbers with a length above zero.
-std::optional<Vec3> directionFromText(std::string_view text) {
-  Vec3 out = Vec3::Zero();
-  for (int i = 0; i < 3; ++i) {
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), out[i]);
-    if (error != std::errc()) return std::nullopt;
-    text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
-    if (i < 2 && !text.starts_with(':')) return std::nullopt;
-    if (i < 2) text.remove_prefix(1);
-  }
-  if (!text.empty() || !out.allFinite() || !(out.norm() > 0)) return std::nullopt;
-  return out.normalized();
-}
-
-}  // namespace
 
 PartMove partMoveFromText(const std::string& text, const std::string& what) {
   const std::size_t second = text.rfind(','), first = second == std::string::npos || second == 0
@@ -45,12 +26,12 @@ PartMove partMoveFromText(const std::string& text, const std::string& what) {
   const bool is_turn = axis.starts_with('r');
   if (is_turn) axis.erase(0, 1);
   std::optional<Vec3> direction = axisFromText(axis);
-  if (!direction) direction = directionFromText(axis);
-  if (!direction)
+  if (!direction) direction = threeNumbers(axis);
+  if (!direction || !direction->allFinite() || !(direction->norm() > 0))
     throw LoadError(what, "",
                     "'" + text + "' has the axis '" + axis +
                         "'; expected x, y, z, or a direction like 0:1:1; r before it turns the part");
-  move.axis_W = *direction;
+  move.axis_W = direction->normalized();
   const std::string amount = text.substr(second + 1);
   if (is_turn)
     move.turn_rad = angleFromText(amount, what);

@@ -2,12 +2,12 @@
 // Sections at planes that the user chose.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
+#include <optional>
 
 #include "check/check_placed.h"
+#include "check/three_numbers.h"
 #include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
@@ -20,19 +20,6 @@ double shift_m(double size_m) {
   constexpr double kShift_m = 1e-9;  // less than any picture shows
   constexpr double kShare = 1e-12;   // some thousand times the rounding of a double
   return std::max(kShift_m, kShare * size_m);
-}
-
-/// The three numbers of "0:0.7:0.7"; false for other text.
-bool readNormal(std::string_view text, Vec3& n) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), n[axis]);
-    if (error != std::errc()) return false;
-    text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
-    if (axis == 2) return text.empty();
-    if (!text.starts_with(':')) return false;
-    text.remove_prefix(1);
-  }
-  return false;
 }
 
 struct CutReach {
@@ -135,7 +122,9 @@ SectionPlane sectionPlaneFromText(const std::string& text, const std::string& wh
   const std::string axis = text.substr(0, at);
   if (axis == "x" || axis == "y" || axis == "z")
     plane.n_W = Vec3::Unit(axis[0] - 'x');
-  else if (!readNormal(axis, plane.n_W))
+  else if (const std::optional<Vec3> normal = threeNumbers(axis))
+    plane.n_W = *normal;
+  else
     fail("has neither an axis (x, y or z) nor a normal of three numbers before the =");
   const double length = plane.n_W.norm();
   if (!std::isfinite(length) || length < 1e-9) fail("has a normal without a direction");

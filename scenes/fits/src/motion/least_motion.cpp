@@ -12,11 +12,9 @@ namespace vps::scenes {
 
 namespace {
 
-using Six = Eigen::Matrix<double, 6, 1>;
-
 /// The derivative of a row's gap by the motion of the body that has the point.
-Six slope(const GapRow& row, const LooseBody& body) {
-  Six out;
+SixNumbers slope(const GapRow& row, const LooseBody& body) {
+  SixNumbers out;
   out << row.n_W, (row.p_W - body.at_W).cross(row.n_W) / body.arm_m;
   return out;
 }
@@ -25,7 +23,7 @@ Six slope(const GapRow& row, const LooseBody& body) {
 struct Slopes {
   struct Side {
     Eigen::Index at = 0;
-    Six slope = Six::Zero();
+    SixNumbers slope = SixNumbers::Zero();
   };
   std::vector<std::array<Side, 2>> of_row;
   Motions start_m;  ///< by row: the gap extrapolated to x = 0
@@ -105,9 +103,15 @@ Motions leastMotion(std::span<const GapRow> rows, std::span<const LooseBody> bod
   return x;
 }
 
-Pose movedPose(const Pose& X_WP, const LooseBody& body, const Six& motion) {
-  const Mat3 R = rotationFromVector(motion.tail<3>() / body.arm_m);
-  return Pose(R, body.at_W - R * body.at_W + motion.head<3>()) * X_WP;
+Pose poseAfter(const Pose& X_WP, const Vec3& at_W, const SixNumbers& motion) {
+  const Mat3 R = rotationFromVector(motion.tail<3>());
+  return Pose(R, at_W - R * at_W + motion.head<3>()) * X_WP;
+}
+
+Pose movedPose(const Pose& X_WP, const LooseBody& body, const SixNumbers& motion) {
+  SixNumbers unscaled = motion;
+  unscaled.tail<3>() /= body.arm_m;
+  return poseAfter(X_WP, body.at_W, unscaled);
 }
 
 }  // namespace vps::scenes

@@ -50,7 +50,14 @@ inline constexpr double kSearchMotionCost = 1e-6;
 Motions leastMotion(std::span<const GapRow> rows, std::span<const LooseBody> bodies, const Motions& from,
                     double e, std::vector<double>& closed_m);
 
+/// A rigid motion of one part or body, in the world: the displacement of a point at_W [m], then the rotation
+/// vector about that point [rad] (of a LooseBody: times arm_m [m]).
+using SixNumbers = Eigen::Matrix<double, 6, 1>;
+
+/// The pose of a part after a motion.
+Pose poseAfter(const Pose& X_WP, const Vec3& at_W, const SixNumbers& motion);
+
 /// The pose after a motion, for a part of the body whose pose is X_WP if all six numbers are 0.
-Pose movedPose(const Pose& X_WP, const LooseBody& body, const Eigen::Matrix<double, 6, 1>& motion);
+Pose movedPose(const Pose& X_WP, const LooseBody& body, const SixNumbers& motion);
 
 }  // namespace vps::scenes

@@ -149,8 +149,8 @@ std::optional<RoundAxis> roundAxisOf(const PartSurface& part, double most_off_m)
         least_cos =
             std::min(least_cos, out_of_axis[k].dot(out_of_axis[next]) / (shadow[k].x() * shadow[next].x()));
     }
-    // A facet across the axis has its shadow on one line z. Corners that are seen under more than half a turn
-    // in all, which pairs of corners do not tell, are a facet around the axis.
+    // The shadow of a facet across the axis is a piece of one line z. Corners on all sides of the axis are
+    // seen under 120 degrees at least, so that dip_m is half of r and the part is not round.
     const bool is_across = std::abs(part.normal(i).dot(out.axis)) > 1 - kAlong;
     const double dip_m =
         is_across ? 0 : most_r_m * (1 - std::sqrt(0.5 * (1 + std::clamp(least_cos, -1.0, 1.0))));

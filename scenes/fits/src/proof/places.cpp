@@ -22,8 +22,6 @@ namespace vps::scenes {
 
 namespace {
 
-using Six = Eigen::Matrix<double, 6, 1>;
-
 /// Remaining overlap that the search accepts: a few times the precision of deepestOverlap().
 constexpr double kClear_m = 3 * kOverlapCertain_m;
 static_assert(kClear_m + kOverlapCertain_m < kContactDepth_m);
@@ -50,7 +48,7 @@ struct Tried {
   Moving moving;
   bool is_free = false;
   double left_m = 0;  ///< deepest remaining overlap beyond the allowed depth
-  std::vector<Six> motion;
+  std::vector<SixNumbers> motion;
   std::vector<Pose> X_WP;
   std::vector<PressedTouch> pressed;  ///< touches of the last step
 };
@@ -64,7 +62,7 @@ class PlaceSearch {
         bodies_(looseBodies(parts, checked)),
         body_of_(bodyOfPart(bodies_, parts.size())),
         clashes_(parts, checked, bodies_),
-        motion_(bodies_.size(), Six::Zero()),
+        motion_(bodies_.size(), SixNumbers::Zero()),
         by_sight_(bodies_) {
     for (const PlacedSurface& part : parts) X_WP_.push_back(part.X_WP);
     for (MovableBody& body : by_sight_)
@@ -453,7 +451,7 @@ class PlaceSearch {
   std::vector<MovableBody> bodies_;
   std::vector<std::size_t> body_of_;
   ClashGroups clashes_;
-  std::vector<Six> motion_;            // by body: motions of the groups that are free so far
+  std::vector<SixNumbers> motion_;     // by body: motions of the groups that are free so far
   std::vector<Pose> X_WP_;             // by part: poses after the motions in motion_
   std::vector<MovableBody> by_sight_;  // the bodies, each allowed to move by kSightTolerance_m; for proofs
   std::size_t work_ = 0;               // work done for the current group

@@ -356,11 +356,6 @@ class CoverSearch {
 
 }  // namespace
 
-Pose poseAfter(const Pose& X_WP, const Vec3& at_W, const SixNumbers& motion) {
-  const Mat3 R = rotationFromVector(motion.tail<3>());
-  return Pose(R, at_W - R * at_W + motion.head<3>()) * X_WP;
-}
-
 PoseCover coverPoses(const PartSurface& part, const Pose& X_WP, std::span<const Obstacle> obstacles,
                      const PoseSet& set, std::size_t most_work) {
   const auto hasInside = [](const PartSurface& of) { return of.isClosed() && !of.solid().isSheet(); };

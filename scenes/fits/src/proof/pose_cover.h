@@ -6,14 +6,10 @@
 #include <optional>
 #include <span>
 
-#include <Eigen/Core>
-
+#include "motion/least_motion.h"
 #include "surface/part_surface.h"
 
 namespace vps::scenes {
-
-/// A motion of a part: displacement of a point at_W [m], then the rotation vector about that point [rad].
-using SixNumbers = Eigen::Matrix<double, 6, 1>;
 
 /// A part at rest.
 struct Obstacle {
@@ -32,9 +28,6 @@ struct PoseSet {
   Box box_W;          ///< moves with the part; empty: no limit
   double most_m = 0;  ///< limit of the corners' displacements from the drawn place
 };
-
-/// The pose of a part after a motion.
-Pose poseAfter(const Pose& X_WP, const Vec3& at_W, const SixNumbers& motion);
 
 struct PoseCover {
   bool is_proven = false;  ///< at every pose of the set, the part overlaps an obstacle by more than its error

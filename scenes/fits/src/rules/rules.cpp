@@ -177,6 +177,13 @@ RuleState worstState(const std::vector<RuleOutcome>& outcomes) {
   return worst == outcomes.end() ? RuleState::Kept : worst->state;
 }
 
+Verdict answerOf(const CheckResult& result) {
+  const RuleState rules = worstState(result.rules);
+  if (rules == RuleState::Broken) return Verdict::Blocked;
+  const Verdict verdict = result.verdict();
+  return verdict == Verdict::Fits && rules == RuleState::NotDecided ? Verdict::NotShown : verdict;
+}
+
 std::string inWords(const RuleOutcome& outcome) {
   std::string out = toText(outcome.measure);
   if (std::isfinite(outcome.value_m))

@@ -74,13 +74,6 @@ void readWishes(const CheckArguments& given, scenes::CheckSettings& settings) {
     throw LoadError("", "", "--min-gap is " + given.min_gap + "; expected more than 0");
 }
 
-int exitStatus(const scenes::CheckResult& result) {
-  const scenes::RuleState rules = scenes::worstState(result.rules);
-  if (rules == scenes::RuleState::Broken) return kBad;
-  const int status = scenes::exitStatusOf(result.verdict());
-  return status == kGood && rules == scenes::RuleState::NotDecided ? kNotShown : status;
-}
-
 Assembly readAssembly(const CheckArguments& given, const Progress& progress) {
   return areCadFiles(given.assembly) ? readCad(given, progress) : readScene(given, progress);
 }
@@ -151,7 +144,7 @@ int runCheck(const CheckArguments& given) {
   std::printf("%s\n", checkHeadline(result).c_str());
   if (changes) std::fputs(revisionTables(*changes).c_str(), stdout);
   pdf.write(page);  // printed last, so that a failure loses no other result
-  return exitStatus(result);
+  return scenes::exitStatusOf(scenes::answerOf(result));
 }
 
 void addWishOptions(CLI::App& command, const std::shared_ptr<CheckArguments>& given) {

@@ -148,17 +148,9 @@ class BookWriter {
     if (book_.blocked.empty()) out_ << "<p>A path was found for every part.</p>\n";
     if (!book_.blocked.empty()) {
       out_ << "<p>No path was found for these parts. They are in place from the beginning in the pictures. "
-              "That no path "
-              "was found does not prove that there is none, where nothing else is said.</p>\n<ul>\n";
+              "Unless a proof is stated, a path may exist.</p>\n<ul>\n";
       for (const scenes::BlockedPart& part : book_.blocked) {
-        std::string line = "'" + part.name + "': no path was found";
-        if (!part.enclosed_by.empty())
-          line = "'" + part.name + "' cannot be taken off '" + part.enclosed_by +
-                 "' on any path, which is proven for rigid parts";
-        else if (!part.by.empty())
-          line += "; in straight directions it is stopped by " + listedNames(part.by);
-        if (!part.is_searched && part.enclosed_by.empty())
-          line += "; the search for paths of several legs ended at its limit";
+        const std::string line = "'" + part.name + "'" + withoutPathWords(part, ": no path was found");
         out_ << "<li>" << escapeHtml(line) << ".</li>\n";
       }
       out_ << "</ul>\n";

@@ -43,14 +43,6 @@ std::string asked(const scenes::CheckResult& result) {
   return out;
 }
 
-scenes::Verdict answerOf(const scenes::CheckResult& result) {
-  const scenes::RuleState rules = scenes::worstState(result.rules);
-  if (rules == scenes::RuleState::Broken) return scenes::Verdict::Blocked;
-  const bool is_doubtful = rules == scenes::RuleState::NotDecided;
-  return is_doubtful && result.verdict() == scenes::Verdict::Fits ? scenes::Verdict::NotShown
-                                                                  : result.verdict();
-}
-
 std::string pairs(const scenes::CheckResult& result) {
   return std::string(
              "<h2>Pairs near each other</h2>\n<p>As drawn. Surfaces that touch to within the error are in "
@@ -196,8 +188,8 @@ std::string checkPage(const scenes::CheckResult& result, const std::string& afte
   static_assert(static_cast<int>(scenes::Verdict::NotShown) == 2);
   return html::page("Check of " + result.assembly,
                     "<h1>Check of " + escapeHtml(result.assembly) + "</h1>\n<p class=\"verdict " +
-                        kClass[static_cast<std::size_t>(answerOf(result))] + "\">" + verdict + "</p>\n" +
-                        asked(result) + after_answer + checkSection(result));
+                        kClass[static_cast<std::size_t>(scenes::answerOf(result))] + "\">" + verdict +
+                        "</p>\n" + asked(result) + after_answer + checkSection(result));
 }
 
 }  // namespace vps::viewer

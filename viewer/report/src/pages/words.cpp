@@ -33,6 +33,15 @@ std::string directionWords(const Vec3& d) {
   return "(" + rounded(d.x()) + ", " + rounded(d.y()) + ", " + rounded(d.z()) + ")";
 }
 
+std::string withoutPathWords(const scenes::BlockedPart& part, const std::string& not_found) {
+  if (!part.enclosed_by.empty())
+    return " cannot be taken off '" + part.enclosed_by + "' on any path, which is proven for rigid parts";
+  std::string out = not_found;
+  if (!part.by.empty()) out += "; in straight directions it is stopped by " + listedNames(part.by);
+  if (!part.is_searched) out += "; the search for paths of several legs ended at its limit";
+  return out;
+}
+
 std::string listedNames(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 8;
   std::string out;

@@ -26,6 +26,10 @@ VPS_SCENES_API void judgeRules(const std::vector<CheckRule>& rules, CheckResult&
 /// The worst state of the outcomes; Kept if there are none.
 VPS_SCENES_API RuleState worstState(const std::vector<RuleOutcome>& outcomes);
 
+/// The check's verdict together with its rules: Blocked if a rule is broken, NotShown instead of Fits if one
+/// is not decided.
+VPS_SCENES_API Verdict answerOf(const CheckResult& result);
+
 /// An outcome in words: "clearance 0.120 mm (+- 2.00 um), at least 0.300 mm wanted".
 VPS_SCENES_API std::string inWords(const RuleOutcome& outcome);
 

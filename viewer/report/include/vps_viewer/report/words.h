@@ -8,6 +8,7 @@
 #include "vps/pose.h"
 #include "vps_scenes/fits/check_types.h"
 #include "vps_scenes/fits/revisions.h"
+#include "vps_scenes/planning/plan_types.h"
 #include "vps_scenes/run/result.h"
 #include "vps_viewer/export.h"
 
@@ -17,6 +18,10 @@ namespace vps::viewer {
 VPS_VIEWER_API std::string directionWords(const Vec3& d);
 /// "'a', 'b'"; of more than eight names the first eight "and 3 more".
 VPS_VIEWER_API std::string listedNames(const std::vector<std::string>& names);
+
+/// What is known of a part without a path, to follow its name: that it is proven to be enclosed, or
+/// `not_found` with the parts that stop it and a search that ended at its limit.
+VPS_VIEWER_API std::string withoutPathWords(const scenes::BlockedPart& part, const std::string& not_found);
 
 /// The words of a verdict: "fits", "blocked", "not shown".
 VPS_VIEWER_API const char* words(scenes::Verdict verdict);
