@@ -66,8 +66,11 @@ AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis,
     play.way[i] = reach[i].is_stopped ? reach[i].s : kPlayForever;
     play.is_given_up = play.is_given_up || reach[i].is_given_up;
     if (!reach[i].is_stopped) continue;
+    // A face that the motion does not approach but for rounding stops it at no certain place.
+    constexpr double kNoRate = 1e-9;
     const double off_m = std::max(error_m, search.chordOf_m(reach[i].by) + MotionSearch::kRest_m);
-    play.error[i] = reach[i].is_given_up || reach[i].rate == 0 ? kPlayForever : off_m / reach[i].rate;
+    const bool is_along = reach[i].rate < kNoRate;
+    play.error[i] = reach[i].is_given_up || is_along ? kPlayForever : off_m / reach[i].rate;
   }
   return play;
 }
