@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -20,6 +21,7 @@
 #include "vps_scenes/fits/check.h"
 #include "vps_viewer/draw/image.h"
 #include "vps_viewer/report/csv.h"
+#include "vps_viewer/report/pages.h"
 #include "vps_viewer/report/plot.h"
 
 namespace vps::viewer {
@@ -171,6 +173,39 @@ TEST(Report, WithoutPicturesItHasTheTables) {
   const ReportOutcome outcome = writeReport(smallScene(), smallResult(), dir, options);
   EXPECT_NE(textOf(outcome.file).find("<h2>Steps</h2>"), std::string::npos);
   for (const std::string& note : outcome.notes) EXPECT_EQ(note.find("pictures"), std::string::npos) << note;
+}
+
+struct EndOfWork : std::exception {};
+
+TEST(Report, AStopWhileItsPicturesAreDrawnEndsIt) {
+  int calls = 0;
+  const ReportOptions options = {.command = {},
+                                 .progress =
+                                     [&calls](std::string_view doing, double) {
+                                       if (doing == "pictures" && ++calls == 2) throw EndOfWork();
+                                     },
+                                 .width = 160,
+                                 .height = 120};
+  EXPECT_THROW(writeReport(smallScene(), smallResult(), freshFolder("stopped"), options), EndOfWork);
+  EXPECT_EQ(calls, 2);
+}
+
+TEST(CheckPage, AStopWhileItsPicturesAreDrawnEndsIt) {
+  scenes::CheckSettings settings;
+  settings.has_maps = true;
+  std::vector<scenes::DrawnPart> cubes(2);
+  cubes[0].name = "below";
+  cubes[1].name = "above";
+  cubes[0].mesh = cubes[1].mesh = makeBox(Vec3::Constant(1e-2));
+  cubes[1].X_WP = Pose::translation(Vec3(0, 0, 1e-2 + 1e-4));
+  const scenes::CheckResult result = scenes::checkAssembly("two cubes", cubes, settings);
+  ASSERT_EQ(result.maps.size(), 2u);
+  int calls = 0;
+  const Progress progress = [&calls](std::string_view, double) {
+    if (++calls == 2) throw EndOfWork();
+  };
+  EXPECT_THROW(checkPage(result, "", progress), EndOfWork);
+  EXPECT_EQ(calls, 2);
 }
 
 TEST(TraceCsv, HasAColumnForEveryNumberOfEveryRow) {

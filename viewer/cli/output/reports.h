@@ -47,6 +47,7 @@ std::string inWords(const scenes::WayFault& fault);
 struct RunFiles {
   std::string command;  ///< command line that repeats the run
   bool has_pictures = true;
+  Progress progress;  ///< may be empty; its exceptions end the writing
 };
 
 /// Fills the folder, which is not yet committed: report.html with pictures and plots, trace.csv, steps.csv

@@ -67,6 +67,7 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
   ReportOptions report;
   report.command = files.command;
   report.has_pictures = files.has_pictures;
+  report.progress = files.progress;
   ReportOutcome outcome = writeReport(scene, result, out.partial(), report);
   throwIfStopped();
   out.write("steps.csv", toCsv(result.steps, scenes::kStepFields));

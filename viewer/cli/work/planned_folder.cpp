@@ -145,39 +145,71 @@ std::vector<scenes::WayFault> faultsOf(const scenes::PlanResult& plan, const Out
   std::vector<scenes::WayFault> faults;
   for (std::size_t i = 0; i < plan.assemblies.size(); ++i) {
     const scenes::Scene scene =
-        scenes::loadScene((std::filesystem::path(out.partial()) / sceneFileName(plan, i)).string());
+        scenes::loadScene((std::filesystem::path(out.partial()) / sceneFileName(plan, i)).string(), progress);
     for (const scenes::WayFault& fault : checkWays(scene, progress)) faults.push_back(fault);
   }
   return faults;
 }
 
-/// Plans the scene. If the program is stopped, the results so far are kept in the folder.
-scenes::PlanResult planned(const PlanArguments& given, const scenes::Scene& scene,
-                           scenes::PlanSettings settings, ProgressBar& bar) {
-  const std::string unfinished = (std::filesystem::path(given.out) / kUnfinishedPlan).string();
-  const std::string key = planKey(scene, settings);
-  std::optional<scenes::PlanFindings> known;
-  if (given.is_resumed) {
-    known = readFindings(unfinished, key);
-    if (!known) say("no " + unfinished + ": there is nothing to resume, so the whole assembly is planned");
-  }
-  scenes::PlanFindings found;
-  if (known) settings.known = &*known;
-  settings.found = &found;
-  try {
-    return planAssembly(scene, settings, bar.progress());
-  } catch (const Stopped&) {
-    bar.clear();
-    if (!found.motions.empty() || !found.taken_off.empty()) {
-      writeWholeFile(unfinished, findingsText(key, found));
-      std::printf("stopped with %zu motions known and %zu parts or sets taken off", found.motions.size(),
-                  found.taken_off.size());
-      for (std::size_t i = 0; i < found.taken_off.size(); ++i)
-        std::printf("%s'%s'", i == 0 ? ": " : ", ", found.taken_off[i].c_str());
-      std::printf("; kept in %s, continue with --resume\n", unfinished.c_str());
+/// What a plan has found so far, which stays in the folder if the program is stopped before the plan is
+/// written.
+class Unfinished {
+ public:
+  /// Refers to the settings, which name this object's findings afterwards. With --resume they get the
+  /// findings of an earlier plan. Throws LoadError if those belong to other parts or are damaged.
+  Unfinished(const PlanArguments& given, const scenes::Scene& scene, scenes::PlanSettings& settings)
+      : file_((std::filesystem::path(given.out) / kUnfinishedPlan).string()), key_(planKey(scene, settings)) {
+    if (given.is_resumed) {
+      known_ = readFindings(file_, key_);
+      if (!known_) say("no " + file_ + ": there is nothing to resume, so the whole assembly is planned");
     }
-    throw;
+    if (known_) settings.known = &*known_;
+    settings.found = &found_;
   }
+
+  /// After a stop.
+  void keep() const {
+    if (found_.motions.empty() && found_.taken_off.empty()) return;
+    writeWholeFile(file_, findingsText(key_, found_));
+    std::printf("stopped with %zu motions known and %zu parts or sets taken off", found_.motions.size(),
+                found_.taken_off.size());
+    for (std::size_t i = 0; i < found_.taken_off.size(); ++i)
+      std::printf("%s'%s'", i == 0 ? ": " : ", ", found_.taken_off[i].c_str());
+    std::printf("; kept in %s, continue with --resume\n", file_.c_str());
+  }
+
+ private:
+  std::string file_, key_;
+  std::optional<scenes::PlanFindings> known_;
+  scenes::PlanFindings found_;
+};
+
+struct WrittenPlan {
+  scenes::PlanResult plan;
+  std::vector<scenes::WayFault> faults;
+};
+
+/// Plans the scene and writes all files of the plan into the folder, without out.commit().
+WrittenPlan planAndWrite(const PlanArguments& given, const scenes::Scene& scene,
+                         const scenes::PlanSettings& settings, const OutputFolder& out, ProgressBar& bar) {
+  WrittenPlan written{planAssembly(scene, settings, bar.progress()), {}};
+  std::vector<std::string> read = given.assembly;
+  for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);
+  std::vector<scenes::Scene> planned_scenes = plannedScenes(scene, written.plan);
+  for (scenes::Scene& one : planned_scenes) {
+    bar.progress()("choosing voxels", 1);
+    const std::string words = fitFidelity(one);
+    if (words.empty()) continue;
+    bar.clear();
+    say(one.name + ": " + words);
+  }
+  writeScenes(given, planned_scenes, written.plan, read, out);
+  written.faults = faultsOf(written.plan, out, bar.progress());
+  throwIfStopped();
+  out.write("plan.dot", planDot(written.plan));
+  out.write("plan.svg", planSvg(written.plan));
+  out.write("plan.json", toJson(written.plan, written.faults));
+  return written;
 }
 
 }  // namespace
@@ -205,23 +237,16 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   scenes::PlanSettings settings;
   settings.fixed = given.bases;
   settings.has_bench = given.has_bench;
-  const scenes::PlanResult plan = planned(given, scene, settings, bar);
-  std::vector<std::string> read = given.assembly;
-  for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);
-  std::vector<scenes::Scene> planned_scenes = plannedScenes(scene, plan);
-  for (scenes::Scene& one : planned_scenes) {
-    bar.progress()("choosing voxels", 1);
-    const std::string words = fitFidelity(one);
-    if (words.empty()) continue;
+  const Unfinished unfinished(given, scene, settings);
+  WrittenPlan written;
+  try {
+    written = planAndWrite(given, scene, settings, out, bar);
+  } catch (const Stopped&) {
     bar.clear();
-    say(one.name + ": " + words);
+    unfinished.keep();
+    throw;
   }
-  writeScenes(given, planned_scenes, plan, read, out);
-  const std::vector<scenes::WayFault> faults = faultsOf(plan, out, bar.progress());
-  throwIfStopped();
-  out.write("plan.dot", planDot(plan));
-  out.write("plan.svg", planSvg(plan));
-  out.write("plan.json", toJson(plan, faults));
+  const auto& [plan, faults] = written;
   out.commit();
   std::filesystem::remove(std::filesystem::path(given.out) / kUnfinishedPlan, error);
   json.write(toJson(plan, faults));

@@ -82,9 +82,16 @@ scenes::Verdict runScene(const AssembleArguments& given) {
                                 : scenes::assembleAndRecord(scene, given.record, options);
   };
   scenes::AssembleResult result;
+  std::vector<std::string> notes;
   try {
     result = run();
     throwIfStopped();
+    bar.progress()("writing the report", 1);
+    notes = fillFolder(
+        out, scene, result,
+        {"vps assemble " + file + " --out " + given.out + (given.takes_apart ? " --disassemble" : "") +
+             (given.tries > 1 ? " --tries " + std::to_string(given.tries) : ""),
+         given.has_pictures, bar.progress()});
   } catch (const Stopped&) {
     bar.clear();
     if (so_far) {
@@ -93,13 +100,6 @@ scenes::Verdict runScene(const AssembleArguments& given) {
     }
     throw;
   }
-
-  bar.progress()("writing the report", 1);
-  const std::vector<std::string> notes = fillFolder(
-      out, scene, result,
-      {"vps assemble " + file + " --out " + given.out + (given.takes_apart ? " --disassemble" : "") +
-           (given.tries > 1 ? " --tries " + std::to_string(given.tries) : ""),
-       given.has_pictures});
   out.commit();
   std::filesystem::remove(unfinished);
   json.write(toJson(result));

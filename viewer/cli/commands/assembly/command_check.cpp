@@ -137,7 +137,7 @@ int runCheck(const CheckArguments& given) {
     changes = changesSince(old_revision, settings, {assembly.parts, result}, bar.progress());
   json.write(toJson(result, changes ? &*changes : nullptr));
   csv.write(checkCsv(result));
-  const std::string page = checkPage(result, changes ? revisionSection(*changes) : "");
+  const std::string page = checkPage(result, changes ? revisionSection(*changes) : "", bar.progress());
   html.write(page);
   bar.clear();
   std::fputs(checkTables(result).c_str(), stdout);

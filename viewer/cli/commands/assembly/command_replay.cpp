@@ -78,7 +78,8 @@ int runReplay(const ReplayArguments& given) {
   std::vector<std::string> notes;
   if (out) {
     bar.progress()("writing the report", 1);
-    notes = fillFolder(*out, replayed.scene, replayed.result, {"vps replay " + given.recording, true});
+    notes = fillFolder(*out, replayed.scene, replayed.result,
+                       {"vps replay " + given.recording, true, bar.progress()});
     out->commit();
   }
   json.write(toJson(replayed.result));

@@ -73,8 +73,8 @@ scenes::Verdict runOnce(const RenderArguments& given, const scenes::RenderOption
   const scenes::AssembleResult result = scenes::renderNode(scene, run, record);
   throwIfStopped();
   if (options.stop->load()) return scenes::Verdict::NotShown;  // vps ask requested another run
-  const std::vector<std::string> notes =
-      fillFolder(out, scene, result, {command + " --session " + given.session, given.has_pictures});
+  const std::vector<std::string> notes = fillFolder(
+      out, scene, result, {command + " --session " + given.session, given.has_pictures, bar.progress()});
   out.commit();
   json.write(toJson(result));
   bar.clear();

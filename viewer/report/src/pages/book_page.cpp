@@ -39,7 +39,7 @@ class BookWriter {
     if (!options.has_pictures) return;
     try {
       renderer_.emplace(drawn_);
-    } catch (const std::exception& error) {  // this machine has no EGL or OpenGL
+    } catch (const std::runtime_error& error) {  // this machine has no EGL or OpenGL
       missing_ = error.what();
     }
   }
@@ -181,7 +181,7 @@ class BookWriter {
       const Image image = renderer_->render(picture.snapshot, picture.camera, options);
       out_ << "<figure>" << pictureSvg(picture, pngInText(pngBytes(image)), options_.width, options_.height)
            << "</figure>\n";
-    } catch (const std::exception& error) {  // OpenGL is out of memory, or the graphics card was reset
+    } catch (const std::runtime_error& error) {  // OpenGL is out of memory, or the graphics card was reset
       missing_ = error.what();
       renderer_.reset();
       out_ << "<p class=\"note\">This picture and the later ones are missing: " << escapeHtml(missing_)

@@ -160,15 +160,16 @@ std::string checkTablesOfRun(const scenes::CheckResult& result) {
   return pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result);
 }
 
-std::string checkSection(const scenes::CheckResult& result) {
+std::string checkSection(const scenes::CheckResult& result, const Progress& progress) {
   const bool has_play =
       std::ranges::any_of(result.parts, [](const auto& part) { return part.play.has_value(); });
   return rules(result) + pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result) +
-         planeSectionPictures(result) + sectionPictures(result) + clearancePictures(result) +
+         planeSectionPictures(result) + sectionPictures(result) + clearancePictures(result, progress) +
          (has_play ? play(result) : "") + meshes(result);
 }
 
-std::string checkPage(const scenes::CheckResult& result, const std::string& after_answer) {
+std::string checkPage(const scenes::CheckResult& result, const std::string& after_answer,
+                      const Progress& progress) {
   const std::size_t clashes = result.clashes();
   std::string answer = escapeHtml(assemblyWords(result));
   if (!answer.empty()) answer.front() = static_cast<char>(std::toupper(answer.front()));
@@ -189,7 +190,7 @@ std::string checkPage(const scenes::CheckResult& result, const std::string& afte
   return html::page("Check of " + result.assembly,
                     "<h1>Check of " + escapeHtml(result.assembly) + "</h1>\n<p class=\"verdict " +
                         kClass[static_cast<std::size_t>(scenes::answerOf(result))] + "\">" + verdict +
-                        "</p>\n" + asked(result) + after_answer + checkSection(result));
+                        "</p>\n" + asked(result) + after_answer + checkSection(result, progress));
 }
 
 }  // namespace vps::viewer

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
+#include <stdexcept>
 #include <vector>
 
 #include "files/html.h"
@@ -144,7 +144,7 @@ ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleRe
   if (!options.has_pictures) return none;
   try {
     return PictureSet(scene, result, dir, options).draw();
-  } catch (const std::exception& error) {
+  } catch (const std::runtime_error& error) {
     none.failure_reason = error.what();  // a missing picture must not end a run
     return none;
   }
@@ -200,7 +200,7 @@ std::string picture(Renderer& renderer, std::size_t part, const Box& box_W, cons
   return "<img alt=\"\" style=\"width:49%;display:inline-block\" src=\"" + pngInText(pngBytes(image)) + "\">";
 }
 
-std::string pictures(const scenes::CheckResult& result) {
+std::string pictures(const scenes::CheckResult& result, const Progress& progress) {
   RenderScene scene;
   std::vector<std::vector<std::array<float, 3>>> colors;
   colors.reserve(result.maps.size());
@@ -214,6 +214,8 @@ std::string pictures(const scenes::CheckResult& result) {
   std::string out;
   for (std::size_t i = 0; i < result.maps.size(); ++i) {
     const scenes::ClearanceMap& map = result.maps[i];
+    if (progress)
+      progress("drawing clearances", static_cast<double>(i) / static_cast<double>(result.maps.size()));
     const double least_m = *std::ranges::min_element(map.distance_m);
     const Box box_W = bounds(map.mesh_W);
     out +=
@@ -243,15 +245,15 @@ std::array<double, 3> clearanceColor(double distance_m, double near_m) {
   return out;
 }
 
-std::string clearancePictures(const scenes::CheckResult& result) {
+std::string clearancePictures(const scenes::CheckResult& result, const Progress& progress) {
   if (result.maps.empty()) return "";
   std::string out =
       "<h2>Clearance on the surfaces</h2>\n<p>The distance of each point of a part's surface from the "
       "nearest other part. The other part is not drawn.</p>\n" +
       legend(result.near_m);
   try {
-    return out + pictures(result);
-  } catch (const std::exception& error) {  // this machine has no EGL or OpenGL
+    return out + pictures(result, progress);
+  } catch (const std::runtime_error& error) {  // this machine has no EGL or OpenGL
     return out + "<p class=\"note\">These pictures are missing: " + escapeHtml(error.what()) + "</p>\n";
   }
 }

@@ -24,7 +24,8 @@ struct ReportPictures {
   std::string failure_reason;  ///< set when no picture could be made
 };
 
-/// Draws the pictures of a run into dir/pictures. Does not throw for a missing OpenGL.
+/// Draws the pictures of a run into dir/pictures. Does not throw for a missing OpenGL,
+/// but any exception of options.progress.
 ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleResult& result,
                             const std::string& dir, const ReportOptions& options);
 
@@ -34,6 +35,7 @@ std::array<double, 3> clearanceColor(double distance_m, double near_m);
 
 /// A section of the page of a check: each part from two sides, with colours of clearance and a legend.
 /// Without OpenGL the section has a note instead.
-std::string clearancePictures(const scenes::CheckResult& result);
+/// @param progress  may be empty; called before each part. Its exceptions end the drawing.
+std::string clearancePictures(const scenes::CheckResult& result, const Progress& progress);
 
 }  // namespace vps::viewer

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vps/errors.h"
 #include "vps_scenes/fits/check_types.h"
 #include "vps_scenes/fits/revisions.h"
 #include "vps_scenes/planning/margin.h"
@@ -18,10 +19,12 @@ namespace vps::viewer {
 /// Tables of pairs, fits and press fits, without pictures, for the report of a run.
 VPS_VIEWER_API std::string checkTablesOfRun(const scenes::CheckResult& result);
 /// Tables of pairs, fits and play, for a page that has other sections.
-VPS_VIEWER_API std::string checkSection(const scenes::CheckResult& result);
+VPS_VIEWER_API std::string checkSection(const scenes::CheckResult& result, const Progress& progress = {});
 /// A whole page of a check, with the answer first.
 /// @param after_answer HTML that follows the answer, as revisionSection()
-VPS_VIEWER_API std::string checkPage(const scenes::CheckResult& result, const std::string& after_answer = {});
+/// @param progress  may be empty; called before each picture. Its exceptions end the drawing.
+VPS_VIEWER_API std::string checkPage(const scenes::CheckResult& result, const std::string& after_answer = {},
+                                     const Progress& progress = {});
 
 /// The differences of two revisions as tables, with the answer before and after.
 VPS_VIEWER_API std::string revisionSection(const scenes::RevisionChanges& changes);
