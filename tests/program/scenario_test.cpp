@@ -334,6 +334,9 @@ TEST_F(Scenario, AStoppedRunKeepsTheStepsThatWereDoneAndSaysWhere) {
   const json kept = json::parse(slurp(folder_ / "run/unfinished.json"));
   ASSERT_EQ(kept["steps"].size(), 1u);
   EXPECT_EQ(kept["steps"][0]["part"], "near");
+  const std::string page = slurp(folder_ / "run/unfinished.html");
+  EXPECT_NE(page.find("1 of 2 steps are finished"), std::string::npos);
+  EXPECT_NE(page.find("near"), std::string::npos);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "vps_scenes/run/assemble.h"
 #include "vps_scenes/run/derived_scenes.h"
 #include "vps_scenes/run/replay.h"
+#include "vps_viewer/report/report.h"
 #include "vps_viewer/report/words.h"
 #include "work/heard_run.h"
 #include "work/planned_folder.h"
@@ -70,10 +71,11 @@ scenes::Verdict runScene(const AssembleArguments& given) {
     heard.hear(scene);
     heard.listenTo(options);
   }
-  const std::string unfinished = given.out + "/unfinished.json";
+  const std::string unfinished = given.out + "/unfinished.json", page = given.out + "/unfinished.html";
   std::optional<scenes::AssembleResult> so_far;
   options.on_step = [&](const scenes::AssembleResult& now) {
     writeWholeFile(unfinished, toJson(now));
+    writeWholeFile(page, unfinishedPage(scene, now));
     so_far = now;
   };
   const auto run = [&] {
@@ -96,12 +98,14 @@ scenes::Verdict runScene(const AssembleArguments& given) {
     bar.clear();
     if (so_far) {
       printSteps(*so_far, scene.fidelity);
-      std::printf("stopped; the results so far are in %s\n", unfinished.c_str());
+      std::printf("stopped; the results so far are in %s, as a page in %s\n", unfinished.c_str(),
+                  page.c_str());
     }
     throw;
   }
   out.commit();
   std::filesystem::remove(unfinished);
+  std::filesystem::remove(page);
   json.write(toJson(result));
   bar.clear();
   if (!given.sound.empty()) wav.write(heard.wav());

@@ -9,6 +9,7 @@
 #include "mesh/scene_meshes.h"
 #include "render/last_draft.h"
 #include "render/passes.h"
+#include "vps/stoppable.h"
 
 namespace vps::viewer {
 namespace {
@@ -55,6 +56,7 @@ struct Renderer::Impl {
     std::size_t triangles = 0;
     for (const DrawnMesh& part : scene) triangles += part.mesh->triangles.size();
     for (const DrawnMesh& part : scene) {
+      pollStop();
       std::unique_ptr<GpuMesh>& mesh = gl->meshes[part.mesh];
       if (!mesh) mesh = std::make_unique<GpuMesh>(part, triangles);
       part_meshes.push_back(mesh.get());

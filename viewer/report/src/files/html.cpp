@@ -167,8 +167,10 @@ std::string figure(const std::string& file, const std::string& caption_html, con
          "<figcaption>" + caption_html + "</figcaption></figure>\n";
 }
 
-std::string pageStart(const std::string& title, const std::string& style) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+std::string pageStart(const std::string& title, const std::string& style, int reload_s) {
+  std::string reload;
+  if (reload_s > 0) reload = "<meta http-equiv=\"refresh\" content=\"" + std::to_string(reload_s) + "\">\n";
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n" + reload +
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
          escapeHtml(title) + "</title>\n<style>" + kStyleSheet + style + "</style>\n</head>\n<body>\n";
 }

@@ -38,7 +38,8 @@ std::string figure(const std::string& file, const std::string& caption_html, con
 
 /// A page that is written in pieces: its start up to the body, and its end.
 /// @param style  style sheet of this page, after that of all pages
-std::string pageStart(const std::string& title, const std::string& style = {});
+/// @param reload_s  a browser loads the page again after this many seconds; 0: never
+std::string pageStart(const std::string& title, const std::string& style = {}, int reload_s = 0);
 inline constexpr const char* kPageEnd = "</body>\n</html>\n";
 
 /// A whole page with the given body. Pictures (PNG) from `folder` that the page shows, and tables and

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "files/html.h"
+#include "vps/stoppable.h"
 #include "vps_scenes/cad/colors.h"
 #include "vps_viewer/draw/image.h"
 #include "vps_viewer/draw/renderer.h"
@@ -142,6 +143,7 @@ ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleRe
   ReportPictures none;
   none.steps.resize(result.steps.size());
   if (!options.has_pictures) return none;
+  const StoppableWork work(options.progress, "pictures");
   try {
     return PictureSet(scene, result, dir, options).draw();
   } catch (const std::runtime_error& error) {
@@ -251,6 +253,7 @@ std::string clearancePictures(const scenes::CheckResult& result, const Progress&
       "<h2>Clearance on the surfaces</h2>\n<p>The distance of each point of a part's surface from the "
       "nearest other part. The other part is not drawn.</p>\n" +
       legend(result.near_m);
+  const StoppableWork work(progress, "drawing clearances");
   try {
     return out + pictures(result, progress);
   } catch (const std::runtime_error& error) {  // this machine has no EGL or OpenGL

@@ -11,6 +11,7 @@
 #include "pages/sections.h"
 #include "plots/run_plot.h"
 #include "vps/errors.h"
+#include "vps/stoppable.h"
 #include "vps/write_file.h"
 #include "vps_device/device_kinds.h"
 #include "vps_scenes/fits/check.h"
@@ -32,13 +33,16 @@ std::string headline(const scenes::AssembleResult& result) {
          escapeHtml(verdictLine(result)) + "</p>\n";
 }
 
-std::string stepTable(const scenes::AssembleResult& result) {
+/// @param has_sections  whether the page has a section for each step, to which the part's name links
+std::string stepTable(const scenes::AssembleResult& result, bool has_sections = true) {
   std::vector<std::vector<Cell>> rows;
   for (std::size_t i = 0; i < result.steps.size(); ++i) {
     const scenes::StepResult& s = result.steps[i];
     const std::string number = std::to_string(i + 1);
     rows.push_back({{number, "n"},
-                    {"<a href=\"#step-" + number + "\">" + escapeHtml(s.part) + "</a>", ""},
+                    {has_sections ? "<a href=\"#step-" + number + "\">" + escapeHtml(s.part) + "</a>"
+                                  : escapeHtml(s.part),
+                     ""},
                     {words(s.verdict), scenes::isGood(s) ? "good" : "bad"},
                     {format(s.duration_s, "%.2f"), "n"},
                     {micrometres(s.max_penetration_m), scenes::isWithinLimit(s) ? "n" : "n bad"},
@@ -135,6 +139,7 @@ std::vector<WrittenPlot> writePlots(const scenes::AssembleResult& result, const 
   for (const scenes::StepResult& step : result.steps) step_names.push_back(step.part);
   std::vector<WrittenPlot> written;
   for (const RunPlot& plot : runPlots()) {
+    pollStop();
     const PlotOutcome whole = plot.draw(result, step_names, -1, dir + "/plots/" + plot.name);
     if (!whole) {
       const std::string note = "No plots: " + whole.failure_reason;
@@ -143,9 +148,11 @@ std::vector<WrittenPlot> writePlots(const scenes::AssembleResult& result, const 
     }
     std::vector<bool> has_step(result.steps.size(), false);
     const bool has_steps = !plot.step_caption.empty() && result.steps.size() > 1;
-    for (std::size_t i = 0; has_steps && i < result.steps.size(); ++i)
+    for (std::size_t i = 0; has_steps && i < result.steps.size(); ++i) {
+      pollStop();
       has_step[i] = static_cast<bool>(
           plot.draw(result, step_names, static_cast<int>(i), dir + "/plots/" + stepPlotName(plot, i)));
+    }
     written.push_back({plot, has_step});
   }
   return written;
@@ -283,12 +290,14 @@ std::string tryTable(const scenes::AssembleResult& result) {
          html::table({"seed of the hand", "verdict", "time [s]", "why"}, rows);
 }
 
-/// The answer, with the reasons for failed steps and for missing parts of the report.
-std::string summary(const scenes::AssembleResult& result, const std::vector<std::string>& notes) {
-  std::string out = headline(result);
-  const auto note = [&out](const std::string& text) {
-    out += "<p class=\"note\">" + escapeHtml(text) + "</p>\n";
-  };
+std::string noteParagraph(const std::string& text) {
+  return "<p class=\"note\">" + escapeHtml(text) + "</p>\n";
+}
+
+/// The reasons of failed steps, and what else a reader must know of a step.
+std::string stepNotes(const scenes::AssembleResult& result) {
+  std::string out;
+  const auto note = [&out](const std::string& text) { out += noteParagraph(text); };
   for (std::size_t i = 0; i < result.steps.size(); ++i) {
     const scenes::StepResult& step = result.steps[i];
     const std::string name = "Step " + std::to_string(i + 1) + ", " + step.part + ": ";
@@ -303,7 +312,13 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
       note(name + "the part lies within its tolerance; later steps use it at its exact target, since '" +
            step.aligned_by + "' aligns it.");
   }
-  for (const std::string& text : notes) note(text);
+  return out;
+}
+
+/// The answer, with the reasons for failed steps and for missing parts of the report.
+std::string summary(const scenes::AssembleResult& result, const std::vector<std::string>& notes) {
+  std::string out = headline(result) + stepNotes(result);
+  for (const std::string& text : notes) out += noteParagraph(text);
   return out + tryTable(result);
 }
 
@@ -340,13 +355,26 @@ void makeFolder(const std::string& folder) {
 
 }  // namespace
 
+std::string unfinishedPage(const scenes::Scene& scene, const scenes::AssembleResult& so_far) {
+  constexpr int kReload_s = 5;
+  const std::string name = !so_far.scene.empty() ? so_far.scene : scene.name;
+  const auto is_good = [](const scenes::StepResult& step) { return scenes::isGood(step); };
+  const auto good = static_cast<std::size_t>(std::ranges::count_if(so_far.steps, is_good));
+  return html::pageStart(name + ", unfinished", {}, kReload_s) + "<h1>" + escapeHtml(name) +
+         "</h1>\n<p class=\"verdict unsure\">" + std::to_string(so_far.steps.size()) + " of " +
+         std::to_string(scene.steps.size()) + " steps are finished; " + std::to_string(good) +
+         " of them fit.</p>\n<p class=\"quiet\">The run goes on, or was stopped. This page is written after "
+         "each step.</p>\n" +
+         stepTable(so_far, false) + stepNotes(so_far) + html::kPageEnd;
+}
+
 ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
                           const std::string& dir, const ReportOptions& options) {
   ReportOutcome outcome;
   outcome.file = dir + "/report.html";
   makeFolder(options.has_pictures ? dir + "/pictures" : dir);
   writeTraceCsv(thinned(result.trace, scene.record.csv_rate_hz), dir + "/trace.csv");
-  if (options.progress) options.progress("plots", 0);
+  const StoppableWork work(options.progress, "plots");
   const std::vector<WrittenPlot> plots = writePlots(result, dir, outcome.notes);
   const ReportPictures pictures = drawPictures(scene, result, dir, options);
   if (!pictures.failure_reason.empty()) outcome.notes.push_back("No pictures: " + pictures.failure_reason);

@@ -14,7 +14,7 @@ namespace vps::viewer {
 
 struct ReportOptions {
   std::string command;       ///< command that repeats the run: "vps assemble scene.toml --out out"
-  Progress progress;         ///< may be empty
+  Progress progress;         ///< may be empty; its exceptions end the writing
   bool has_pictures = true;  ///< false: tables and plots only, without OpenGL
   int width = 1280, height = 960;
 };
@@ -30,5 +30,9 @@ struct ReportOutcome {
 /// cannot be written.
 VPS_VIEWER_API ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
                                          const std::string& dir, const ReportOptions& options = {});
+
+/// A page of the steps that are finished while a run goes on, without pictures. A browser loads it again
+/// every five seconds.
+VPS_VIEWER_API std::string unfinishedPage(const scenes::Scene& scene, const scenes::AssembleResult& so_far);
 
 }  // namespace vps::viewer
