@@ -143,9 +143,11 @@ std::string format(double value, const char* form) {
 std::string table(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
                   const std::string& css_class) {
   std::string out = "<div class=\"scroll\"><table" + attribute(css_class) + "><thead><tr>";
-  for (std::size_t i = 0; i < header.size(); ++i)
-    out += "<th" + attribute(!rows.empty() && i < rows[0].size() ? rows[0][i].css_class : "") + ">" +
-           header[i] + "</th>";
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    // Numbers are on the right, and so is their header. "n bad" is a number that is marked.
+    const bool is_number = !rows.empty() && i < rows[0].size() && rows[0][i].css_class.starts_with("n");
+    out += "<th" + attribute(is_number ? "n" : "") + ">" + header[i] + "</th>";
+  }
   out += "</tr></thead><tbody>\n";
   for (const auto& row : rows) {
     out += "<tr>";
