@@ -24,6 +24,7 @@
 #include "vps/write_file.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/planning/plan.h"
+#include "vps_scenes/scene/number_words.h"
 #include "vps_scenes/scene/scene_text.h"
 #include "work/book_file.h"
 
@@ -170,8 +171,9 @@ scenes::PlanResult planned(const PlanArguments& given, const scenes::Scene& scen
     bar.clear();
     if (!found.motions.empty() || !found.taken_off.empty()) {
       writeWholeFile(unfinished, findingsText(key, found));
-      std::printf("stopped with %zu motions known and %zu parts or sets taken off", found.motions.size(),
-                  found.taken_off.size());
+      std::printf("stopped with %s known and %s taken off",
+                  scenes::counted(found.motions.size(), "motion").c_str(),
+                  scenes::counted(found.taken_off.size(), "part or set", "parts or sets").c_str());
       for (std::size_t i = 0; i < found.taken_off.size(); ++i)
         std::printf("%s'%s'", i == 0 ? ": " : ", ", found.taken_off[i].c_str());
       std::printf("; kept in %s, continue with --resume\n", unfinished.c_str());
