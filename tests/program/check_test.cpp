@@ -47,6 +47,15 @@ TEST_F(Check, AGapAContactAndAClashHaveTheirExitStatusAndNumbers) {
   }
 }
 
+TEST_F(Check, TheHeadlineCountsAndThePageNamesFilesWithoutFolders) {
+  const std::string folder = folder_.string();
+  const Ran ran =
+      run("check '" + folder + "/plate.stl' '" + folder + "/pin.stl' --units mm --no-play --html check.html");
+  EXPECT_NE(ran.out.find("2 parts, 1 pair near each other"), std::string::npos) << ran.out;
+  EXPECT_NE(slurp(folder_ / "check.html").find("<title>Check of plate.stl, pin.stl</title>"),
+            std::string::npos);
+}
+
 TEST_F(Check, AStepsTargetIsWhereThePartIsChecked) {
   write("drawn.toml", scene(5) + "[[step]]\npart = 'pin'\ntarget = {position = [0, 0, 8.95]}\n");
   const Ran ran = run("check drawn.toml --no-play");

@@ -70,6 +70,18 @@ TEST(CheckFits, AShaftInABoreHasItsClearanceWhateverTheFacets) {
     }
 }
 
+TEST(CheckFits, AShaftThatIsDrawnBesideItsBoreIsNoStandardFit) {
+  for (const double offset_m : {0.0, 70e-6}) {
+    const std::vector<CheckedFit> fits =
+        fitsOf({part("bore", makeTube(0.008, 0.004, 0.03, 96)),
+                part("shaft", makeCylinder(0.004, 0.05, 96), Pose::translation(Vec3(offset_m, 0, 0)))});
+    ASSERT_EQ(fits.size(), 1U);
+    EXPECT_NEAR(fits[0].offset_m, offset_m, 1e-9);
+    EXPECT_EQ(fits[0].isEccentric(), offset_m > 0);
+    EXPECT_EQ(standardOf(fits[0]), offset_m > 0 ? "sizes of H6/h5, but axes 70.00 um apart" : "H6/h5");
+  }
+}
+
 // Other programs write facets that are divided further: the new corners lie on the flat facets, inside the
 // circle.
 TEST(CheckFits, ADividedMeshHasTheSizesOfItsCorners) {

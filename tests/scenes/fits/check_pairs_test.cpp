@@ -27,6 +27,16 @@ Pose at(double x, double y, double z) {
   return Pose::translation(Vec3(x, y, z));
 }
 
+TEST(CheckPairs, AGapThatEveryReportWritesAsZeroIsContact) {
+  for (const auto& [gap_m, state] :
+       {std::pair{4e-9, PairState::Contact}, std::pair{6e-9, PairState::Apart}}) {
+    const CheckResult result = check({block("plate", {0.1, 0.1, 0.02}, at(0, 0, -0.01)),
+                                      block("block", {0.01, 0.02, 0.03}, at(0.02, 0.01, 0.015 + gap_m))});
+    ASSERT_EQ(result.pairs.size(), 1U) << gap_m;
+    EXPECT_EQ(result.pairs[0].state, state) << gap_m;
+  }
+}
+
 TEST(CheckPairs, ABlockAboveAPlateHasItsGapAsClearance) {
   for (const double gap_m : {1e-6, 20e-6, 0.9e-3}) {
     const CheckResult result = check({block("plate", {0.1, 0.1, 0.02}, at(0, 0, -0.01)),

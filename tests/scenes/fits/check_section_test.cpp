@@ -111,5 +111,39 @@ TEST(CheckSection, AMapHasTheGapAtEachPointOfTheSurface) {
   EXPECT_GT(result.maps[0].mesh_W.vertices.size(), 500U);  // the plate of 8 corners is divided
 }
 
+// The coordinates of a file in single precision are off by up to 60 nm here, to both sides of the common
+// plane.
+TEST(CheckSection, AMapOfTouchingPlatesHasNoSpotsOfOverlap) {
+  const Pose X_W(rotationFromVector(Vec3(1, 0.7, -0.4)), Vec3(1, 0.7, 0.3));
+  const auto plate = [&](const std::string& name, const Vec3& size_m, double z_m) {
+    Mesh mesh = makeBox(size_m);
+    for (Vec3& p : mesh.vertices) p = (X_W * (p + Vec3(0, 0, z_m))).cast<float>().cast<double>();
+    return part(name, mesh);
+  };
+  const CheckResult result = checkAssembly(
+      "test", {plate("below", {0.04, 0.03, 0.005}, -0.0025), plate("above", {0.03, 0.02, 0.005}, 0.0025)},
+      pictures());
+  ASSERT_EQ(result.maps.size(), 2U);
+  for (const ClearanceMap& map : result.maps) {
+    std::size_t touching = 0;
+    for (const double distance_m : map.distance_m) {
+      EXPECT_GE(distance_m, 0) << map.part;
+      touching += distance_m < 0.1e-6 ? 1 : 0;
+    }
+    EXPECT_GT(touching, 300U) << map.part;
+  }
+}
+
+TEST(CheckSection, AMapHasTheDepthOfAClash) {
+  const CheckResult result = checkAssembly(
+      "test",
+      {part("plate", makeBox(Vec3(0.1, 0.1, 0.02)), Pose::translation(Vec3(0, 0, -0.01))),
+       part("block", makeBox(Vec3(0.03, 0.02, 0.01)), Pose::translation(Vec3(0, 0, 0.005 - 50e-6)))},
+      pictures());
+  ASSERT_EQ(result.maps.size(), 2U);
+  for (const ClearanceMap& map : result.maps)
+    EXPECT_NEAR(*std::ranges::min_element(map.distance_m), -50e-6, 1e-9) << map.part;
+}
+
 }  // namespace
 }  // namespace vps::scenes

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -44,11 +45,66 @@ TEST(Fasteners, AreNamedWithTheirSizes) {
                                   at("clip", ringPiece(9e-3, 11e-3, 0, 1e-3, 20, 340), {0, 0, 0})};
   for (DrawnPart& part : parts) part.X_WP = X_W;
   std::map<std::string, std::string> words = wordsOf(parts);
-  EXPECT_EQ(words["bolt"], "screw M8 x 30");
+  EXPECT_EQ(words["bolt"], "headed pin 8 x 30 mm (if threaded, M8)");
   EXPECT_EQ(words["nut"], "nut for M8");
   EXPECT_EQ(words["washer"], "washer 8.4 x 16 x 1.6 mm");
   EXPECT_EQ(words["pin"], "pin 6 x 20 mm");
   EXPECT_EQ(words["clip"], "circlip 18 x 22 x 1 mm");
+}
+
+// Widths across flats and heights of DIN 985 (M10 and M12 are wider than in ISO 4032), threads of ISO 262.
+TEST(Fasteners, ALockNutIsNamedByItsHoleAndItsWidthAcrossFlats) {
+  struct Nut {
+    double size_mm, pitch_mm, across_mm, height_mm;
+  };
+  for (const Nut& nut : {Nut{3, 0.5, 5.5, 4}, Nut{4, 0.7, 7, 5}, Nut{5, 0.8, 8, 5}, Nut{6, 1, 10, 6},
+                         Nut{8, 1.25, 13, 8}, Nut{10, 1.5, 17, 10}, Nut{12, 1.75, 19, 12}}) {
+    const double corner_m = 1e-3 * nut.across_mm / std::sqrt(3.0);
+    // The hole is drawn with the major diameter, the minor diameter or that of the drill.
+    for (const double below : {0.0, 1.0825, 1.0}) {
+      const double hole_m = 0.5e-3 * (nut.size_mm - below * nut.pitch_mm);
+      std::map<std::string, std::string> words =
+          wordsOf({at("nut", plainNut(hole_m, corner_m, 1e-3 * nut.height_mm), {0, 0, 0})});
+      EXPECT_EQ(words["nut"], "nut for M" + std::to_string(std::lround(nut.size_mm))) << below;
+    }
+  }
+}
+
+/// A shank with a hexagonal head around z.
+Mesh hexagonScrew(double shank_m, double length_m, double corner_m, double height_m) {
+  constexpr int kColumns = 96;
+  return test::sweptSections(kColumns, [&](int i) {
+    const double angle = test::kTurn_rad * (i % kColumns) / kColumns;
+    const double out_m = test::polygonRadius(corner_m, 6, angle);
+    return std::vector<Vec3>{test::polar(0, angle, 0),
+                             test::polar(shank_m, angle, 0),
+                             test::polar(shank_m, angle, length_m),
+                             test::polar(out_m, angle, length_m),
+                             test::polar(out_m, angle, length_m + height_m),
+                             test::polar(0, angle, length_m + height_m)};
+  });
+}
+
+TEST(Fasteners, AStepWithoutThreadAndDriveIsNoScrew) {
+  const std::vector<DrawnPart> parts = {at("screw", hexagonScrew(4e-3, 30e-3, 7.5e-3, 5.3e-3), {0, 0, 0}),
+                                        at("probe", headed(8.545e-3, 40e-3, 14e-3, 12e-3), {0, 0, 0}),
+                                        at("clevis", headed(2e-3, 17.09e-3, 4e-3, 3e-3), {0, 0, 0}),
+                                        at("twice stepped",
+                                           test::lathe({{0, 0},
+                                                        {2e-3, 0},
+                                                        {2e-3, 10e-3},
+                                                        {3e-3, 10e-3},
+                                                        {3e-3, 14e-3},
+                                                        {4e-3, 14e-3},
+                                                        {4e-3, 17e-3},
+                                                        {0, 17e-3}},
+                                                       96),
+                                           {0, 0, 0})};
+  std::map<std::string, std::string> words = wordsOf(parts);
+  EXPECT_EQ(words["screw"], "screw M8 x 30, hexagon head");
+  EXPECT_EQ(words["probe"], "");
+  EXPECT_EQ(words["clevis"], "headed pin 4 x 17.09 mm (if threaded, M4)");
+  EXPECT_EQ(words["twice stepped"], "");
 }
 
 TEST(Fasteners, ThreadsGiveTheirStandardSize) {

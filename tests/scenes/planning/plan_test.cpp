@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Orders and paths of assemblies for which both are known.
 #include "vps_scenes/planning/plan.h"
+#include "vps_scenes/planning/plan_fields.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -493,6 +494,41 @@ TEST(CheckWays, AWayThroughAWallThinnerThanAnyStepIsNamed) {
     EXPECT_EQ(faults.front().against, "wall");
     EXPECT_NEAR(faults.front().depth_m, 50e-6, 2e-6);  // the greatest depth, in the middle of the wall
   }
+}
+
+// The block is let down 10 um and a little more into the plate on its way, where 10 um are allowed.
+TEST(CheckWays, ADepthBeyondTheAllowedOneByLessThanTheErrorIsNoFault) {
+  const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
+                                        at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})};
+  PlanSettings settings;
+  settings.fixed = {"plate"};
+  Scene scene = plannedScenes(sceneOf(parts), planAssembly("test", parts, settings)).front();
+  SceneStep& step = scene.steps.front();
+  step.X_WP_start.p = Vec3(0, 0, 0.05);
+  for (const auto& [beyond_m, faults] : {std::pair{0.1e-6, 0U}, std::pair{0.4e-6, 1U}}) {
+    step.way_points = {Pose::translation(Vec3(0, 0, 0.015 - 10e-6 - beyond_m))};
+    EXPECT_EQ(checkWays(scene).size(), faults) << beyond_m;
+  }
+}
+
+// What nothing proves is no "blocked" for a program that reads the plan.
+TEST(PlanFields, OnlyAPartThatIsProvenToHaveNoPathIsBlocked) {
+  PlannedAssembly assembly;
+  assembly.blocked.resize(2);
+  assembly.blocked[0].name = "ball";
+  assembly.blocked[0].enclosed_by = "shell";
+  assembly.blocked[1].name = "cube";
+  const auto namesIn = [&](std::string_view key) {
+    std::vector<std::string> names;
+    forEachRow(kPlannedAssemblyFields, [&](const auto& row) {
+      if constexpr (requires { std::invoke(row.get, assembly).front().enclosed_by; })
+        if (row.key == key)
+          for (const BlockedPart& part : std::invoke(row.get, assembly)) names.push_back(part.name);
+    });
+    return names;
+  };
+  EXPECT_EQ(namesIn("blocked"), std::vector<std::string>{"ball"});
+  EXPECT_EQ(namesIn("not_found"), std::vector<std::string>{"cube"});
 }
 
 TEST(CheckWays, AnOrderASupportAndAClearanceThatAreLostAreNamed) {

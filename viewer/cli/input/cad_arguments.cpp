@@ -8,6 +8,7 @@
 #include "output/terminal.h"
 #include "vps/errors.h"
 #include "vps_scenes/planning/plan.h"
+#include "vps_scenes/scene/number_words.h"
 #include "vps_scenes/scene/scene_parts.h"
 #include "vps_scenes/scene/scene_text.h"
 
@@ -100,8 +101,9 @@ std::vector<scenes::PartGroup> groupsOf(scenes::ImportedCad& cad, const CadArgum
   wishes.is_proposed = !given.has_no_groups;
   std::vector<scenes::PartGroup> groups = scenes::partGroups(cad, wishes);
   for (const scenes::PartGroup& group : groups)
-    say("group '" + group.name + "': " + std::to_string(group.parts.size()) + " parts are one body (" +
-        group.reason + ")" + (group.reason == "asked for" ? "" : "; --no-groups keeps them apart"));
+    say("group '" + group.name + "': " + scenes::counted(group.parts.size(), "part is", "parts are") +
+        " one body (" + group.reason + ")" +
+        (group.reason == "asked for" ? "" : "; --no-groups keeps them apart"));
   return groups;
 }
 

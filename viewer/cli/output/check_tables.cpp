@@ -8,6 +8,7 @@
 #include "output/field_table.h"
 #include "output/table.h"
 #include "vps_scenes/fits/check_fields.h"
+#include "vps_scenes/scene/number_words.h"
 #include "vps_viewer/report/asked_words.h"
 #include "vps_viewer/report/csv.h"
 #include "vps_viewer/report/words.h"
@@ -16,6 +17,8 @@ namespace vps::viewer {
 
 namespace {
 
+using scenes::counted;
+using scenes::lengthInWords;
 using scenes::PairState;
 
 std::string pairTable(const scenes::CheckResult& result) {
@@ -88,8 +91,8 @@ std::string undrawnPressFits(const scenes::CheckResult& result) {
   std::string out;
   for (const scenes::CheckedPair& pair : result.pairs)
     if (pair.press_fit_m > 0 && pair.state < PairState::PressFit)
-      out += pair.a + " and " + pair.b + ": " + um(pair.press_fit_m) +
-             " um of press fit are declared, but the parts are drawn without an overlap\n";
+      out += pair.a + " and " + pair.b + ": " + lengthInWords(pair.press_fit_m, 2) +
+             " of press fit are declared, but the parts are drawn without an overlap\n";
   return out;
 }
 
@@ -114,9 +117,8 @@ std::string checkTables(const scenes::CheckResult& result) {
 
 std::string checkHeadline(const scenes::CheckResult& result) {
   const bool is_chosen = result.isAboutChosenPairs();
-  std::string out = result.assembly + ": " + std::to_string(result.parts.size()) + " parts, " +
-                    std::to_string(result.pairs.size()) + (is_chosen ? " chosen" : "") +
-                    " pairs near each other, ";
+  std::string out = result.assembly + ": " + counted(result.parts.size(), "part") + ", " +
+                    counted(result.pairs.size(), is_chosen ? "chosen pair" : "pair") + " near each other, ";
   const std::string answer = assemblyWords(result);
   std::string about;
   for (const std::string& words : {chosenWords(result), moveWords(result), ruleWords(result)})
@@ -129,8 +131,8 @@ std::string checkHeadline(const scenes::CheckResult& result) {
                            : answer) +
            about;
   const scenes::CheckedPair& worst = *result.deepestClash();
-  out += std::to_string(clashes) + (clashes == 1 ? " clash: " : " clashes, the deepest: ") + worst.a +
-         " and " + worst.b + " by " + um(worst.interference_depth_m) + " um (+- " + um(worst.error_m) +
+  out += counted(clashes, "clash: ", "clashes, the deepest: ") + worst.a + " and " + worst.b + " by " +
+         lengthInWords(worst.interference_depth_m, 2) + " (+- " + lengthInWords(worst.error_m, 2) +
          ") as drawn";
   return out + "\n" + answer + about;
 }

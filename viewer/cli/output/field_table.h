@@ -14,14 +14,14 @@ namespace vps::viewer {
 /// A row for each struct.
 template <class Struct, class Rows>
 std::string fieldTable(const std::vector<Struct>& structs, const Rows& fields) {
+  ColumnTable columns = columnTable(structs, fields, Medium::Terminal, fixed);
   std::vector<std::string> heads;
-  for (const ColumnCell& heading : columnHeadings(fields, Medium::Terminal))
+  for (const ColumnCell& heading : columns.headings)
     heads.push_back((heading.is_left ? "<" : "") + heading.text);
   Table table(heads);
-  for (const Struct& of : structs) {
+  for (std::vector<ColumnCell>& row : columns.rows) {
     std::vector<std::string> cells;
-    for (ColumnCell& cell : columnCells(of, fields, Medium::Terminal, fixed))
-      cells.push_back(std::move(cell.text));
+    for (ColumnCell& cell : row) cells.push_back(std::move(cell.text));
     table.add(std::move(cells));
   }
   return table.text();

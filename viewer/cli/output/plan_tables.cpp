@@ -8,6 +8,7 @@
 #include <set>
 
 #include "output/table.h"
+#include "vps_scenes/scene/number_words.h"
 #include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
@@ -88,14 +89,14 @@ std::string blockedText(const scenes::BlockedPart& blocked) {
 std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   std::string out =
       assembly.name + " begins with '" + assembly.fixed.front() + "' (" + assembly.fixed_reason + ").\n";
-  Table table({"step", "<part", "<path", "<moves", "<stays", "passes [mm]", "fit [mm]", "<order"});
+  Table table({"step", "<part", "<path", "<moves", "<at target", "passes [mm]", "fit [mm]", "<order"});
   for (std::size_t i = 0; i < assembly.steps.size(); ++i) {
     const scenes::PlannedStep& step = assembly.steps[i];
     const std::string name =
         step.parts.size() == 1 ? step.name : step.name + " (" + listedNames(step.parts) + ")";
     table.add(
         {std::to_string(i + 1), name, wayText(step), directionText(step.insertion_W),
-         step.is_carried ? "by itself" : "held",
+         step.is_carried ? "carried" : "held",
          step.clearance_m ? fixed(1e3 * *step.clearance_m, 3) : "> " + fixed(1e3 * scenes::kNearWay_m, 0),
          step.fit_clearance_m ? fixed(1e3 * *step.fit_clearance_m, 3) : "", needsText(assembly, step)});
   }
@@ -212,10 +213,9 @@ std::string planTables(const scenes::PlanResult& plan) {
   out += framesText(plan);
   for (const scenes::OverlapChoice& choice : plan.choices) out += choice.words + ".\n";
   if (plan.cut_motions > 0)
-    out +=
-        std::to_string(plan.cut_motions) +
-        " straight motions were too long to follow to their end and count as stopped; a greater --deflection "
-        "makes them shorter.\n";
+    out += scenes::counted(plan.cut_motions, "straight motion was", "straight motions were") +
+           " too long to follow to the end and " + (plan.cut_motions == 1 ? "counts" : "count") +
+           " as stopped; a greater --deflection makes such motions shorter.\n";
   for (const scenes::CheckedPair& pair : plan.uncertain)
     out += "It is not known whether '" + pair.a + "' and '" + pair.b +
            "' overlap, because a part has no inside there; their surfaces were used.\n";
@@ -223,14 +223,12 @@ std::string planTables(const scenes::PlanResult& plan) {
 }
 
 std::string planHeadline(const scenes::PlanResult& plan) {
-  std::string out =
-      plan.assembly + ": " + std::to_string(plan.steps()) + (plan.steps() == 1 ? " step" : " steps");
+  std::string out = plan.assembly + ": " + scenes::counted(plan.steps(), "step");
   if (const std::size_t subs = plan.assemblies.size() - 1; subs > 0)
-    out += ", " + std::to_string(subs) + (subs == 1 ? " subassembly" : " subassemblies");
+    out += ", " + scenes::counted(subs, "subassembly", "subassemblies");
   const std::size_t blocked = plan.blocked();
-  out += blocked == 0
-             ? std::string(", all parts planned")
-             : ", " + std::to_string(blocked) + (blocked == 1 ? " part" : " parts") + " without a path";
+  out += blocked == 0 ? std::string(", all parts planned")
+                      : ", " + scenes::counted(blocked, "part") + " without a path";
   if (const std::size_t proven = plan.enclosed(); proven > 0)
     out +=
         ", " + (proven == blocked ? "proven" : std::to_string(proven) + " of them proven") + " to have none";
@@ -241,17 +239,18 @@ std::string inWords(const scenes::WayFault& fault) {
   if (fault.kind == scenes::WayFaultKind::Support)
     return "nothing in place carries '" + fault.part +
            "' when it is let go; mount the part that carries it before, or set holds = true in its step";
-  if (fault.kind == scenes::WayFaultKind::Clearance)
-    return "the path of '" + fault.part + "' passes '" + fault.against + "' at " +
-           fixed(1e3 * fault.clearance_m, 3) + " mm, where " + fixed(1e3 * fault.planned_m, 3) +
-           " mm were planned; give other way_points";
+  if (fault.kind == scenes::WayFaultKind::Clearance) {
+    const auto [is, planned] = toldApart(fault.clearance_m, fault.planned_m);
+    return "the path of '" + fault.part + "' passes '" + fault.against + "' at " + is + " mm, where " +
+           planned + " mm were planned; give other way_points";
+  }
   const std::string remedy = fault.kind == scenes::WayFaultKind::Order
                                  ? "; mount '" + fault.against + "' after it, or give other way_points"
                                  : "; give other way_points, or another order";
-  return "the path of '" + fault.part + "' leads through '" + fault.against + "', " +
-         fixed(1e3 * fault.depth_m, 3) + " mm deep at (" + fixed(1e3 * fault.at_W.x(), 2) + ", " +
-         fixed(1e3 * fault.at_W.y(), 2) + ", " + fixed(1e3 * fault.at_W.z(), 2) + ") mm (" +
-         fixed(1e3 * fault.allowed_m, 3) + " mm allowed)" + remedy;
+  const auto [depth, allowed] = toldApart(fault.depth_m, fault.allowed_m);
+  return "the path of '" + fault.part + "' leads through '" + fault.against + "', " + depth +
+         " mm deep at (" + fixed(1e3 * fault.at_W.x(), 2) + ", " + fixed(1e3 * fault.at_W.y(), 2) + ", " +
+         fixed(1e3 * fault.at_W.z(), 2) + ") mm (" + allowed + " mm allowed)" + remedy;
 }
 
 }  // namespace vps::viewer

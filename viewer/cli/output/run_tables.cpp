@@ -88,9 +88,6 @@ void printSteps(const scenes::AssembleResult& result, const Fidelity& fidelity) 
     if (!step.reason.empty()) std::printf("%s: %s\n", name, step.reason.c_str());
     if (step.completed && !step.by_contact && !step.is_taken_off)
       std::printf("%s: assembled by contact: %s\n", name, contactWords(step).c_str());
-    if (!step.stands_on.empty())
-      std::printf("%s: this step was tried with '%s' put at its target, which it had not reached\n", name,
-                  step.stands_on.c_str());
     if (step.moved_m > 0) std::printf("%s: %s\n", name, movedWords(step).c_str());
     if (!step.aligned_by.empty())
       std::printf("%s: the part is within its tolerance; '%s' moves it to its exact target in a later step\n",
@@ -101,6 +98,7 @@ void printSteps(const scenes::AssembleResult& result, const Fidelity& fidelity) 
           "farther\n",
           name, step.index_count == 1 ? "once" : (std::to_string(step.index_count) + " times").c_str());
   }
+  if (const std::string put = putAtTargetWords(result); !put.empty()) std::printf("%s\n", put.c_str());
   if (result.contacts_left_out > 0)
     warn(std::to_string(result.contacts_left_out) +
          " points near contact exceeded the limit of a query; choose a coarser spacing");

@@ -24,6 +24,7 @@
 #include "vps/write_file.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/planning/plan.h"
+#include "vps_scenes/scene/number_words.h"
 #include "vps_scenes/scene/scene_text.h"
 #include "work/book_file.h"
 
@@ -171,8 +172,9 @@ class Unfinished {
   void keep() const {
     if (found_.motions.empty() && found_.taken_off.empty()) return;
     writeWholeFile(file_, findingsText(key_, found_));
-    std::printf("stopped with %zu motions known and %zu parts or sets taken off", found_.motions.size(),
-                found_.taken_off.size());
+    std::printf("stopped with %s known and %s taken off",
+                scenes::counted(found_.motions.size(), "motion").c_str(),
+                scenes::counted(found_.taken_off.size(), "part or set", "parts or sets").c_str());
     for (std::size_t i = 0; i < found_.taken_off.size(); ++i)
       std::printf("%s'%s'", i == 0 ? ": " : ", ", found_.taken_off[i].c_str());
     std::printf("; kept in %s, continue with --resume\n", file_.c_str());

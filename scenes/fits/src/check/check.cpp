@@ -18,6 +18,7 @@
 #include "vps/mesh_repair.h"
 #include "vps/stoppable.h"
 #include "vps_scenes/fits/rules.h"
+#include "vps_scenes/scene/number_words.h"
 
 namespace vps::scenes {
 
@@ -66,6 +67,8 @@ std::string volumeWords(const CheckedPair& pair) {
 }
 
 std::string standardOf(const CheckedFit& fit) {
+  if (fit.isEccentric() && !fit.iso_286.empty())
+    return "sizes of " + fit.iso_286 + ", but axes " + lengthInWords(fit.offset_m, 2) + " apart";
   if (fit.kind != FitKind::Thread || !fit.thread.empty()) return fit.iso_286 + fit.thread;
   std::array<char, 80> text{};
   std::snprintf(text.data(), text.size(), "lead %.3f mm%s%s", 1e3 * std::abs(fit.lead_m),

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "rules/asked_pairs.h"
@@ -13,15 +14,42 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMostParts = 24;         // assumed: more pictures than a reader looks at
-constexpr std::size_t kMostVertices = 40'000;  // assumed: a map of this size takes a tenth of a second
-constexpr double kFine = 1.0 / 100;            // longest edge divided by the part's size: about four pixels
+constexpr std::size_t kMostParts = 24;          // assumed: more pictures than a reader looks at
+constexpr std::size_t kMostVertices = 120'000;  // assumed: a map of this size takes a third of a second
+constexpr double kFine = 1.0 / 100;             // longest edge divided by the part's size: about four pixels
 
 using Edge = std::array<std::uint32_t, 2>;
 
-/// Halves each edge that is longer than longest_m and near the box of another part. The mesh stays closed,
-/// because both facets at an edge divide it. Returns false if no edge was halved.
-bool divideOnce(Mesh& mesh, double longest_m, const std::vector<Box>& others_W) {
+/// A part near the mapped one.
+struct NearPart {
+  const PlacedSurface* part = nullptr;
+  double contact_m =
+      0;  ///< an overlap up to this depth counts as contact, see CheckedPair::isBeyondContact()
+};
+
+/// Distance of a point from a part's surface, at most most_m; negative inside the part.
+double distanceFrom(const PlacedSurface& part, const Vec3& p_W, double most_m) {
+  return part.surface->solid().signedDistance(part.X_WP.inverse() * p_W, most_m);
+}
+
+/// Whether a point of the triangle can be nearer to the surface of another part than near_m. Farther
+/// triangles have one colour, so that dividing them would add no detail.
+bool reachesAnother(const Triangle& t_W, const std::vector<NearPart>& others, double near_m) {
+  Box box_W;
+  for (const Vec3& p_W : t_W) box_W.add(p_W);
+  const Vec3 middle_W = (t_W[0] + t_W[1] + t_W[2]) / 3;
+  double radius_m = 0;
+  for (const Vec3& p_W : t_W) radius_m = std::max(radius_m, (p_W - middle_W).norm());
+  const double reach_m = near_m + radius_m;
+  return std::ranges::any_of(others, [&](const NearPart& other) {
+    return overlap(box_W, grown(other.part->box_W, near_m)) &&
+           std::abs(distanceFrom(*other.part, middle_W, reach_m)) < reach_m;
+  });
+}
+
+/// Halves each edge that is longer than longest_m and near another part. The mesh stays closed, because both
+/// facets at an edge divide it. Returns false if no edge was halved.
+bool divideOnce(Mesh& mesh, double longest_m, const std::vector<NearPart>& others, double near_m) {
   std::map<Edge, std::uint32_t> middle;
   const auto divided = [&](std::uint32_t a, std::uint32_t b) -> std::uint32_t {
     const auto [low, high] = std::minmax(a, b);
@@ -29,9 +57,10 @@ bool divideOnce(Mesh& mesh, double longest_m, const std::vector<Box>& others_W) 
     return known == middle.end() ? a : known->second;
   };
   for (const auto& t : mesh.triangles) {
-    Box box;
-    for (const std::uint32_t v : t) box.add(mesh.vertices[v]);
-    if (std::ranges::none_of(others_W, [&](const Box& other) { return overlap(box, other); })) continue;
+    const Triangle t_W = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+    const double edge_m =
+        std::max({(t_W[1] - t_W[0]).norm(), (t_W[2] - t_W[1]).norm(), (t_W[0] - t_W[2]).norm()});
+    if (edge_m <= longest_m || !reachesAnother(t_W, others, near_m)) continue;
     for (std::size_t e = 0; e < 3; ++e) {
       const auto [low, high] = std::minmax(t[e], t[(e + 1) % 3]);
       const Vec3 a = mesh.vertices[low], b = mesh.vertices[high];
@@ -71,28 +100,26 @@ bool divideOnce(Mesh& mesh, double longest_m, const std::vector<Box>& others_W) 
   return true;
 }
 
-ClearanceMap mapOf(const PlacedSurface& part, const std::vector<const PlacedSurface*>& others,
-                   double near_m) {
+ClearanceMap mapOf(const PlacedSurface& part, const std::vector<NearPart>& others, double near_m) {
   ClearanceMap map{part.name, transformed(part.surface->mesh(), part.X_WP), {}};
-  std::vector<Box> others_W;
-  for (const PlacedSurface* other : others) others_W.push_back(grown(other->box_W, near_m));
   const double longest_m = kFine * part.box_W.size().norm();
-  while (map.mesh_W.vertices.size() < kMostVertices && divideOnce(map.mesh_W, longest_m, others_W))
+  while (map.mesh_W.vertices.size() < kMostVertices && divideOnce(map.mesh_W, longest_m, others, near_m))
     pollStop();
   map.distance_m.assign(map.mesh_W.vertices.size(), near_m);
   for (std::size_t i = 0; i < map.distance_m.size(); ++i) {
     pollStop();
     const Vec3& p_W = map.mesh_W.vertices[i];
     double& least_m = map.distance_m[i];
-    for (const PlacedSurface* other : others) {
+    for (const auto& [other, contact_m] : others) {
       const Vec3 out = (other->box_W.min - p_W).cwiseMax(p_W - other->box_W.max).cwiseMax(0);
       const double apart_m = out.norm();
       if (apart_m >= std::max(least_m, 1e-300)) continue;
       // A point outside a part's box is outside the part. Within the box, the point can be inside although
       // the surface is far away.
       const double most_m = apart_m > 0 ? least_m : near_m;
-      const Vec3 p = other->X_WP.inverse() * p_W;
-      least_m = std::min(least_m, other->surface->solid().signedDistance(p, most_m));
+      const double distance_m = distanceFrom(*other, p_W, most_m);
+      // Touching faces cross each other by rounding and by their facets' error, which is no overlap.
+      least_m = std::min(least_m, distance_m < 0 && distance_m >= -contact_m ? 0 : distance_m);
     }
   }
   return map;
@@ -115,9 +142,17 @@ std::vector<ClearanceMap> clearanceMaps(const std::vector<PlacedSurface>& parts,
   std::erase_if(near, [&](const auto& pair) { return !choice.has(pair.first, pair.second); });
   std::vector<ClearanceMap> maps(wanted.size());
   forEachOnCores(wanted.size(), progress, "mapping the clearance", [&](std::size_t k) {
-    std::vector<const PlacedSurface*> others;
-    for (const auto& [a, b] : near)
-      if (a == wanted[k] || b == wanted[k]) others.push_back(&parts[a == wanted[k] ? b : a]);
+    std::vector<NearPart> others;
+    for (const auto& [a, b] : near) {
+      if (a != wanted[k] && b != wanted[k]) continue;
+      const auto isPair = [&](const CheckedPair& pair) {
+        return (pair.a == parts[a].name && pair.b == parts[b].name) ||
+               (pair.a == parts[b].name && pair.b == parts[a].name);
+      };
+      const auto pair = std::ranges::find_if(result.pairs, isPair);
+      const double error_m = pair == result.pairs.end() ? 0 : pair->error_m;
+      others.push_back({&parts[a == wanted[k] ? b : a], error_m + kContactDepth_m});
+    }
     maps[k] = mapOf(parts[wanted[k]], others, near_m);
   });
   return maps;

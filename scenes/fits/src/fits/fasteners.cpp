@@ -91,8 +91,13 @@ class Turned {
     return static_cast<double>(std::ranges::count(is_covered, true)) / kBins;
   }
 
-  /// Number of sides of a square or hexagon around the axis; 0: the part is neither.
-  [[nodiscard]] int sides() const {
+  /// Number of sides of a square or hexagon around the axis (0: the part is neither), and its width across
+  /// flats.
+  struct Sides {
+    int count = 0;
+    double across_m = 0;
+  };
+  [[nodiscard]] Sides sides() const {
     constexpr double kAcross = 0.02, kSameOffset = 0.01, kSameAngle = 0.02;
     std::vector<double> angles;
     double offset_m = 0;
@@ -109,9 +114,22 @@ class Turned {
       if (is_new) angles.push_back(angle);
     }
     const auto count = static_cast<int>(angles.size());
-    if (count != 4 && count != 6) return 0;
+    if (count != 4 && count != 6) return {};
     // The corners of the polygon are the part's farthest points from the axis.
-    return std::abs(offset_m / std::cos(kPi / count) - radius_m_) < 0.1 * radius_m_ ? count : 0;
+    if (std::abs(offset_m / std::cos(kPi / count) - radius_m_) >= 0.1 * radius_m_) return {};
+    return {count, 2 * offset_m};
+  }
+
+  /// Whether a flat face lies along the axis between two positions along it: a side or a slot for a wrench or
+  /// a key.
+  [[nodiscard]] bool hasFlatAlong(double from_m, double to_m) const {
+    constexpr double kAcross = 0.02;
+    return std::ranges::any_of(faces_.flat, [&](const FlatFace& flat) {
+      if (std::abs(flat.n.dot(axis_)) > kAcross || flat.facets.empty()) return false;
+      const Triangle t = surface_.triangle(flat.facets.front());
+      const double at_m = along((t[0] + t[1] + t[2]) / 3);
+      return at_m >= from_m && at_m <= to_m;
+    });
   }
 
   [[nodiscard]] double volume_m3() const { return std::abs(massProperties(surface_.mesh()).volume_m3); }
@@ -149,14 +167,19 @@ std::string sizeOf(double diameter_m) {
   return name.empty() ? millimetres(diameter_m) + " mm" : name;
 }
 
-std::string sizeOfHole(double diameter_m) {
+/// Name of the thread of a nut whose hole is drawn plain. A hole can be the major diameter of one thread and
+/// the drill of the next one: 5 mm are M5 and M6. The width across flats then decides.
+std::string sizeOfHole(double diameter_m, const Turned::Sides& sides) {
+  if (sides.count == 6)
+    if (const std::string name = metricNut(diameter_m, sides.across_m); !name.empty()) return name;
   const std::string name = metricHole(diameter_m);
   return name.empty() ? sizeOf(diameter_m) : name;
 }
 
-/// A screw: a shank with a head at one of its ends.
+/// A screw or a headed pin: a shank with a head at one of its ends.
 std::optional<FastenerShape> screwWith(const Turned& part, const Vec3& axis, const Vec3& p, double radius_m,
-                                       const std::array<double, 2>& shank, const std::string& size) {
+                                       const std::array<double, 2>& shank, const std::string& size,
+                                       bool is_threaded) {
   const double slack_m = 0.05 * radius_m;
   const double above_m = part.high_m() - shank[1], below_m = shank[0] - part.low_m();
   const double over_m = part.greatestBeyond(shank[1] + slack_m, part.high_m()),
@@ -167,7 +190,21 @@ std::optional<FastenerShape> screwWith(const Turned& part, const Vec3& axis, con
   if (height_m > kMostHeadHeight * radius_m) return std::nullopt;
   const double length_m = part.length_m() - height_m;
   if (length_m < radius_m) return std::nullopt;
-  const int sides = part.sides();
+  const int sides = part.sides().count;
+  const double head_from_m = is_above ? shank[1] : part.low_m(),
+               head_to_m = is_above ? part.high_m() : shank[0];
+  const bool has_drive = sides > 0 || part.hasFlatAlong(head_from_m - slack_m, head_to_m + slack_m);
+  if (!is_threaded && !has_drive) {
+    // Without thread and drive only the proportions of a headed pin are left. A stepped shaft or a probe has
+    // them by chance, but seldom one metric size up to its end.
+    constexpr double kWhole =
+        0.8;  // share of the shank's length that has one diameter; the rest are chamfers
+    const std::string metric = metricSize(2 * radius_m);
+    if (metric.empty() || shank[1] - shank[0] < kWhole * length_m) return std::nullopt;
+    const std::string words = "headed pin " + millimetres(2 * radius_m) + " x " + millimetres(length_m) +
+                              " mm (if threaded, " + metric + ")";
+    return shapeOf(FastenerKind::HeadedPin, words, axis, p, radius_m, shank);
+  }
   const std::string head = sides == 6 ? ", hexagon head" : sides == 4 ? ", square head" : "";
   return shapeOf(FastenerKind::Screw, "screw " + size + " x " + millimetres(length_m) + head, axis, p,
                  radius_m, shank);
@@ -197,7 +234,7 @@ std::optional<FastenerShape> threaded(const PartSurface& surface, const FitFaces
       shank[0] = std::min(shank[0], part.rangeOf(round)[0]);
       shank[1] = std::max(shank[1], part.rangeOf(round)[1]);
     }
-  return screwWith(part, thread.axis, thread.p, thread.greatest_m, shank, size);
+  return screwWith(part, thread.axis, thread.p, thread.greatest_m, shank, size, true);
 }
 
 /// A washer, nut or circlip: a ring or polygon around a hole that passes through the whole part.
@@ -219,13 +256,15 @@ std::optional<FastenerShape> holed(const Turned& part, const RoundFace& bore, co
           FastenerKind::Washer,
           "washer " + millimetres(2 * r) + " x " + millimetres(2 * R) + " x " + millimetres(h) + " mm",
           bore.axis, bore.p, r, range);
-    const int sides = part.sides();
-    if (sides == 0 || R > kMostNut * r || R < kLeastNut * r || h < kFlat * r || h > 4 * r)
+    const auto [sides, across_m] = part.sides();
+    const bool is_standard = sides == 6 && !metricNut(2 * r, across_m).empty();  // M3 and less are wider
+    if (sides == 0 || (R > kMostNut * r && !is_standard) || R < kLeastNut * r || h < kFlat * r || h > 4 * r)
       return std::nullopt;
     const double polygon_m2 = 0.5 * sides * R * R * std::sin(2 * kPi / sides);
     if (!isNear(part.volume_m3(), (polygon_m2 - kPi * r * r) * h, 2 * kVolume)) return std::nullopt;
     // The hole of a nut is drawn with the major or the minor diameter of its thread.
-    return shapeOf(FastenerKind::Nut, "nut for " + sizeOfHole(2 * r), bore.axis, bore.p, r, range);
+    return shapeOf(FastenerKind::Nut, "nut for " + sizeOfHole(2 * r, {sides, across_m}), bore.axis, bore.p, r,
+                   range);
   }
   if (turn > kLeastOpen && has_rim && R - r < 0.4 * R && h < 0.4 * R &&
       isNear(part.volume_m3(), turn * ring_m3, 0.3))
@@ -247,7 +286,7 @@ std::optional<FastenerShape> shanked(const Turned& part, const RoundFace& shank)
     return shapeOf(FastenerKind::Pin, "pin " + millimetres(2 * r) + " x " + millimetres(length_m) + " mm",
                    shank.axis, shank.p, r, range);
   }
-  return screwWith(part, shank.axis, shank.p, r, range, sizeOf(2 * r));
+  return screwWith(part, shank.axis, shank.p, r, range, sizeOf(2 * r), false);
 }
 
 }  // namespace
@@ -290,6 +329,8 @@ const char* toText(FastenerKind kind) {
       return "key";
     case FastenerKind::Circlip:
       return "circlip";
+    case FastenerKind::HeadedPin:
+      return "headed pin";
   }
   return "";
 }

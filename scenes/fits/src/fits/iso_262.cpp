@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fits/iso_sizes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -93,17 +94,59 @@ std::string metricSize(double major_m) {
   return "";
 }
 
-std::string metricHole(double minor_m) {
+namespace {
+
+/// Whether a hole has the minor diameter of a nut, D - 1.0825 P, or the diameter of its drill, D - P.
+bool isMinor(double hole_mm, double nominal_mm, double pitch_mm) {
   constexpr double kMost = 1.0825, kLeast = 1, kSlack = 0.1;
-  const auto is = [&](double nominal_mm, double pitch_mm) {
-    const double below = (nominal_mm - 1e3 * minor_m) / pitch_mm;
-    return pitch_mm > 0 && below < kMost + kSlack && below > kLeast - kSlack;
-  };
+  const double below = (nominal_mm - hole_mm) / pitch_mm;
+  return pitch_mm > 0 && below < kMost + kSlack && below > kLeast - kSlack;
+}
+
+}  // namespace
+
+std::string metricHole(double minor_m) {
+  const double hole_mm = 1e3 * minor_m;
   for (const Size& size : kSizes)
-    if (is(size.nominal, size.coarse)) return nameOf(size.nominal, size.coarse, true, false);
+    if (isMinor(hole_mm, size.nominal, size.coarse)) return nameOf(size.nominal, size.coarse, true, false);
   for (const Size& size : kSizes)
     for (const double fine_mm : size.fine)
-      if (is(size.nominal, fine_mm)) return nameOf(size.nominal, fine_mm, false, false);
+      if (isMinor(hole_mm, size.nominal, fine_mm)) return nameOf(size.nominal, fine_mm, false, false);
+  return "";
+}
+
+std::string metricNut(double hole_m, double across_m) {
+  struct Nut {
+    double nominal;
+    std::array<double, 2> across;  ///< widths across flats [mm]; 0: none
+  };
+  constexpr std::array kNuts = {
+      Nut{1.6, {3.2}},   Nut{2, {4}},   Nut{2.5, {5}}, Nut{3, {5.5}}, Nut{3.5, {6}},     Nut{4, {7}},
+      Nut{5, {8}},       Nut{6, {10}},  Nut{7, {11}},  Nut{8, {13}},  Nut{10, {16, 17}}, Nut{12, {18, 19}},
+      Nut{14, {21, 22}}, Nut{16, {24}}, Nut{18, {27}}, Nut{20, {30}}, Nut{22, {34, 32}}, Nut{24, {36}},
+      Nut{27, {41}},     Nut{30, {46}}, Nut{33, {50}}, Nut{36, {55}}, Nut{39, {60}},     Nut{42, {65}},
+      Nut{45, {70}},     Nut{48, {75}}, Nut{52, {80}}, Nut{56, {85}}, Nut{60, {90}},     Nut{64, {95}}};
+  // Product grades A to C let a nut be narrower by up to 3 %.
+  constexpr double kNarrower = 0.03, kWider = 0.002;
+  const double hole_mm = 1e3 * hole_m, across_mm = 1e3 * across_m;
+  for (const Size& size : kSizes) {
+    const auto nut = std::ranges::find(kNuts, size.nominal, &Nut::nominal);
+    if (nut == kNuts.end()) continue;
+    const bool is_width = std::ranges::any_of(nut->across, [&](double standard_mm) {
+      return standard_mm > 0 && across_mm > (1 - kNarrower) * standard_mm &&
+             across_mm < (1 + kWider) * standard_mm;
+    });
+    if (!is_width) continue;
+    // A hole drawn with the major diameter may have the clearance of a tapped hole's root.
+    constexpr double kRoot = 0.1;  // of the pitch
+    const auto isMajor = [&](double pitch_mm) {
+      return pitch_mm > 0 && std::abs(hole_mm - size.nominal) < kRoot * pitch_mm;
+    };
+    if (isMajor(size.coarse) || isMinor(hole_mm, size.nominal, size.coarse))
+      return nameOf(size.nominal, size.coarse, true, false);
+    for (const double fine_mm : size.fine)
+      if (isMinor(hole_mm, size.nominal, fine_mm)) return nameOf(size.nominal, fine_mm, false, false);
+  }
   return "";
 }
 

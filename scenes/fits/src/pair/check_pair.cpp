@@ -84,6 +84,10 @@ OverlapDepth deepestOf(const PlacedSurface& a, const PlacedSurface& b, double er
   return {found.depth_m, found.depth_m + kOverlapCertain_m, found.p_W};
 }
 
+/// Parts that are nearer to each other than this touch: coordinates in a file are rounded more coarsely, and
+/// all reports write such a gap as 0.00 um.
+constexpr double kLeastGap_m = 5e-9;
+
 std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
   CheckedPair pair{.a = a.name, .b = b.name};
   pair.is_allowed = a.drawn->allow_overlap || b.drawn->allow_overlap;
@@ -130,7 +134,7 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
   if (!(gap.distance_m < most_m)) return std::nullopt;
   pair.clearance_m = gap.distance_m;
   pair.at_W = a.X_WP * (0.5 * (gap.p_A + gap.p_B));
-  pair.state = gap.distance_m > pair.error_m ? PairState::Apart : PairState::Contact;
+  pair.state = gap.distance_m > pair.error_m + kLeastGap_m ? PairState::Apart : PairState::Contact;
   return pair;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <string_view>
@@ -12,6 +11,7 @@
 
 #include "rules/pair_choice.h"
 #include "vps/errors.h"
+#include "vps_scenes/scene/number_words.h"
 
 namespace vps::scenes {
 
@@ -136,12 +136,6 @@ class Judge {
   std::vector<RuleCount> counts_;
 };
 
-std::string micrometresInWords(double length_m) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.2f um", 1e6 * length_m);
-  return text.data();
-}
-
 }  // namespace
 
 const char* toText(RuleMeasure measure) {
@@ -187,9 +181,9 @@ Verdict answerOf(const CheckResult& result) {
 std::string inWords(const RuleOutcome& outcome) {
   std::string out = toText(outcome.measure);
   if (std::isfinite(outcome.value_m))
-    out += " " + micrometresInWords(outcome.value_m) + " (+- " + micrometresInWords(outcome.error_m) + ")";
+    out += " " + lengthInWords(outcome.value_m, 2) + " (+- " + lengthInWords(outcome.error_m, 2) + ")";
   out += outcome.measure == RuleMeasure::Clearance ? ", at least " : ", at most ";
-  out += micrometresInWords(outcome.bound_m) + " wanted";
+  out += lengthInWords(outcome.bound_m, 2) + " wanted";
   return outcome.reason.empty() ? out : out + "; " + outcome.reason;
 }
 

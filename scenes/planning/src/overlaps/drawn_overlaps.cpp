@@ -150,7 +150,8 @@ class Explained {
   }
   [[nodiscard]] bool isScrew(const std::string& name) const {
     const auto& shape = shapeOf(name);
-    return shape && (shape->kind == FastenerKind::Screw || shape->kind == FastenerKind::Stud);
+    return shape && (shape->kind == FastenerKind::Screw || shape->kind == FastenerKind::Stud ||
+                     shape->kind == FastenerKind::HeadedPin);  // may be a screw that is drawn plain
   }
   [[nodiscard]] bool isNut(const std::string& name) const {
     return shapeOf(name) && shapeOf(name)->kind == FastenerKind::Nut;

@@ -75,6 +75,9 @@ class WayCheck {
   }
 
  private:
+  /// The depths at the target and on the path may each be off by kOverlapCertain_m. A smaller difference of
+  /// the two proves no fault.
+  static constexpr double kMeasured_m = 2 * kOverlapCertain_m;
   static constexpr std::uint64_t kMostWork = 2'000'000;  // takes a few seconds for each leg
 
   [[nodiscard]] Overlap depthAt(const PlacedSurface& held, const Pose& X_WP) const {
@@ -91,8 +94,8 @@ class WayCheck {
       const PlacedSurface& held = *held_->parts[i];
       if (!overlap(box_W, held.box_W)) continue;
       const Overlap here = depthAt(held, X_WP);
-      if (here.depth_m <= allowed_m_[i] || here.depth_m - allowed_m_[i] <= worst.depth_m - worst.allowed_m)
-        continue;
+      const double beyond_m = here.depth_m - allowed_m_[i];
+      if (beyond_m <= kMeasured_m || beyond_m <= worst.depth_m - worst.allowed_m) continue;
       worst = {WayFaultKind::Through, part_.name, held.name, here.depth_m, allowed_m_[i], here.p_W};
     }
   }

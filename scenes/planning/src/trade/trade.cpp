@@ -20,6 +20,7 @@
 #include "vps/errors.h"
 #include "vps_scenes/run/assemble.h"
 #include "vps_scenes/scene/model_options.h"
+#include "vps_scenes/scene/number_words.h"
 #include "vps_scenes/scene/scene.h"
 
 namespace vps::scenes {
@@ -112,7 +113,7 @@ class Trade {
         plan_(options, scene_.fidelity) {
     const SceneStep& first = scene.steps.front();
     result_.scene = scene.name;
-    result_.excerpt = options.is_thorough ? "all " + std::to_string(scene.steps.size()) + " steps"
+    result_.excerpt = options.is_thorough ? "all " + counted(scene.steps.size(), "step")
                                           : "step 1 of " + std::to_string(scene.steps.size()) + ": " +
                                                 scene.parts[first.part].part.name;
     result_.fixed = fixedChoices();

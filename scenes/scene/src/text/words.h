@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lengths, angles, points and names in sentences.
+// Angles, points and names in sentences, beside the lengths and counts of number_words.h.
 #pragma once
 
 #include <algorithm>
@@ -10,20 +10,9 @@
 #include <vector>
 
 #include "vps/pose.h"
+#include "vps_scenes/scene/number_words.h"
 
 namespace vps::scenes {
-
-/// A length in words: "12.3 um" below a millimetre, "1.23 mm" below a metre, "1.23 m" above.
-inline std::string lengthInWords(double length_m) {
-  char text[64];
-  if (length_m < 1e-3)
-    std::snprintf(text, sizeof text, "%.1f um", 1e6 * length_m);
-  else if (length_m < 1)
-    std::snprintf(text, sizeof text, "%.2f mm", 1e3 * length_m);
-  else
-    std::snprintf(text, sizeof text, "%.2f m", length_m);
-  return text;
-}
 
 /// An angle in words: "1.2 degrees"
 inline std::string degreesInWords(double angle_rad) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps check: measures overlap, clearance, fits and play of an assembly as drawn, and judges rules for pairs.
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -35,6 +36,7 @@ struct CheckArguments {
 
 struct Assembly {
   std::string name;
+  std::string title;  ///< name without folders
   std::vector<scenes::DrawnPart> parts;
   std::vector<std::string> read;  ///< files that were read
 };
@@ -44,7 +46,7 @@ Assembly readScene(const CheckArguments& given, const Progress& progress) {
   requireNoCadOptions(file, given.cad);
   const scenes::Scene scene = loadedScene(file, given.cad.cache, progress);
   for (const std::string& warning : scene.warnings) warn(warning);
-  Assembly assembly{scene.name, scenes::drawnParts(scene), {file}};
+  Assembly assembly{scene.name, scene.name, scenes::drawnParts(scene), {file}};
   for (const scenes::ScenePart& part : scene.parts) assembly.read.push_back(part.file);
   return assembly;
 }
@@ -56,7 +58,10 @@ Assembly readCad(const CheckArguments& given, const Progress& progress) {
   const std::string& first = given.assembly.front();
   for (const std::string& warning : scene.warnings)
     warn(given.assembly.size() > 1 ? warning : first + ": " + warning);
-  return {given.assembly.size() > 1 ? listedFiles(given.assembly) : first, scenes::drawnParts(scene),
+  std::string title;
+  for (const std::string& file : given.assembly)
+    title += (title.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+  return {given.assembly.size() > 1 ? listedFiles(given.assembly) : first, title, scenes::drawnParts(scene),
           given.assembly};
 }
 
@@ -129,8 +134,8 @@ int runCheck(const CheckArguments& given) {
   }
   scenes::moveParts(assembly.parts, moves, "--move");
   for (const scenes::SectionPlane& plane : settings.planes) scenes::requireCut(plane, assembly.parts);
-  const scenes::CheckResult result =
-      scenes::checkAssembly(assembly.name, assembly.parts, settings, bar.progress());
+  scenes::CheckResult result = scenes::checkAssembly(assembly.name, assembly.parts, settings, bar.progress());
+  result.title = assembly.title;
   throwIfStopped();
   std::optional<scenes::RevisionChanges> changes;
   if (!given.against.empty())

@@ -12,6 +12,7 @@
 #include "output/terminal.h"
 #include "vps/errors.h"
 #include "vps_scenes/planning/plan.h"
+#include "vps_scenes/scene/number_words.h"
 #include "work/planned_folder.h"
 
 namespace vps::viewer {
@@ -31,7 +32,8 @@ int verify(const PlanArguments& given) {
   json.write(toJson(scene.name, faults));
   bar.clear();
   for (const scenes::WayFault& fault : faults) std::printf("%s\n", inWords(fault).c_str());
-  std::printf("%s: %zu steps, %zu with faults\n", scene.name.c_str(), scene.steps.size(), faults.size());
+  std::printf("%s: %s, %zu with faults\n", scene.name.c_str(),
+              scenes::counted(scene.steps.size(), "step").c_str(), faults.size());
   return faults.empty() ? kGood : kBad;
 }
 

@@ -22,6 +22,7 @@
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/fits/fasteners.h"
 #include "vps_scenes/planning/plan.h"
+#include "vps_scenes/scene/number_words.h"
 #include "vps_scenes/scene/scene_parts.h"
 #include "vps_scenes/scene/scene_text.h"
 
@@ -158,8 +159,8 @@ int runImport(const ImportArguments& given) {
   std::fputs((writtenPartTable(answer.parts) + fastenerText(fasteners)).c_str(), stdout);
   for (const std::string& warning : cad.warnings)
     warn(given.files.size() > 1 ? warning : cad.file + ": " + warning);
-  std::printf("%zu parts from %s; scene: %s/scene.toml\n", cad.parts.size(), cad.format.c_str(),
-              given.out.c_str());
+  std::printf("%s from %s; scene: %s/scene.toml\n", scenes::counted(cad.parts.size(), "part").c_str(),
+              cad.format.c_str(), given.out.c_str());
   return kGood;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps device --characterise: Table 1 and figure 5 of the paper for the simulated dual arm.
+// vps device --characterise: Table 1 and figure 5 of Tripicchio et al. (see README.md) for the simulated dual arm.
 // vps device --list: the kinds of device.
 // vps device --session NAME: the process of the device in a run that vps render computes.
 #include <cstdio>
@@ -136,7 +136,7 @@ void addCoupling(Table& table, const char* rate, const device::DeviceLimits& lim
 
 constexpr const char* kNotes = R"(
 Continuous -> peak. All figures are computed from the model. Parameters that the paper does not give are
-assumed; data/dual_arm.toml states the reason for each. Differences between this device and the paper:
+assumed; data/dual_arm.toml states the reason for each. Differences between this device and the paper by Tripicchio et al.:
 (1) The paper gives a solid angle in rad. The range of the gimbal was chosen for 12 sr. The arms would collide
     near the reversed direction of the handle, which reduces the solid angle at the centre; the clearance is
     negative there.
@@ -159,7 +159,7 @@ assumed; data/dual_arm.toml states the reason for each. Differences between this
 )";
 
 void print(const device::DualArmCharacter& c) {
-  Table table({"<dual arm", "<unit", "this device", "the paper"});
+  Table table({"<dual arm", "<unit", "this device", "Tripicchio et al."});
   addWorkspace(table, c);
   addStrength(table, c);
   addMechanics(table, c);

@@ -10,8 +10,15 @@
 #include <system_error>
 
 #include "files/external.h"
+#include "vps_scenes/scene/number_words.h"
 
 namespace vps::viewer {
+
+std::string lengthOnPage(double length_m) {
+  std::string out = scenes::lengthInWords(length_m, 2);
+  if (const std::size_t at = out.find("um"); at != std::string::npos) out.replace(at, 2, "µm");
+  return out;
+}
 
 std::string escapeHtml(const std::string& text) {
   std::string out;

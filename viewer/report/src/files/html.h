@@ -58,6 +58,9 @@ inline std::string micrometres(double length_m, const char* form = "%.2f") {
   return html::format(1e6 * length_m, form);
 }
 
+/// A measured length with a suitable unit: "12.34 µm", "11.716 mm".
+std::string lengthOnPage(double length_m);
+
 /// A round length with a suitable unit: "5 mm", "200 µm".
 inline std::string lengthText(double length_m) {
   if (length_m >= 1) return html::format(length_m, "%g m");

@@ -182,15 +182,15 @@ std::string checkPage(const scenes::CheckResult& result, const std::string& afte
     verdict = (clashes == 1 ? "Two parts overlap as drawn: "
                             : std::to_string(clashes) + " pairs of parts overlap as drawn, the deepest: ") +
               escapeHtml(worst.a) + " and " + escapeHtml(worst.b) + " by " +
-              micrometres(worst.interference_depth_m) + " µm (± " + micrometres(worst.error_m) + "). " +
+              lengthOnPage(worst.interference_depth_m) + " (± " + lengthOnPage(worst.error_m) + "). " +
               verdict;
   }
   constexpr std::array kClass = {"good", "bad", "unsure"};
   static_assert(static_cast<int>(scenes::Verdict::NotShown) == 2);
-  return html::page("Check of " + result.assembly,
-                    "<h1>Check of " + escapeHtml(result.assembly) + "</h1>\n<p class=\"verdict " +
-                        kClass[static_cast<std::size_t>(scenes::answerOf(result))] + "\">" + verdict +
-                        "</p>\n" + asked(result) + after_answer + checkSection(result, progress));
+  const std::string title = "Check of " + (result.title.empty() ? result.assembly : result.title);
+  return html::page(title, "<h1>" + escapeHtml(title) + "</h1>\n<p class=\"verdict " +
+                               kClass[static_cast<std::size_t>(scenes::answerOf(result))] + "\">" + verdict +
+                               "</p>\n" + asked(result) + after_answer + checkSection(result, progress));
 }
 
 }  // namespace vps::viewer

@@ -18,16 +18,16 @@ std::string fieldTableOnPage(const std::vector<Struct>& structs, const Rows& fie
     if (const std::size_t at = heading.find("mm3"); at != std::string::npos) heading.replace(at, 3, "mm³");
     return heading;
   };
-  std::vector<std::string> header;
-  for (const ColumnCell& heading : columnHeadings(fields, Medium::Page))
-    header.push_back(inPageUnits(heading.text));
   const WriteNumber write = [](double value, int digits) {
     return html::format(value, ("%." + std::to_string(digits) + "f").c_str());
   };
+  const ColumnTable columns = columnTable(structs, fields, Medium::Page, write);
+  std::vector<std::string> header;
+  for (const ColumnCell& heading : columns.headings) header.push_back(inPageUnits(heading.text));
   std::vector<std::vector<html::Cell>> rows;
-  for (const Struct& of : structs) {
+  for (const std::vector<ColumnCell>& cells : columns.rows) {
     std::vector<html::Cell>& row = rows.emplace_back();
-    for (const ColumnCell& cell : columnCells(of, fields, Medium::Page, write)) {
+    for (const ColumnCell& cell : cells) {
       std::string css_class = cell.is_left ? "" : "n";
       if (cell.is_bad) css_class += css_class.empty() ? "bad" : " bad";
       row.push_back({escapeHtml(cell.text), css_class});

@@ -9,6 +9,7 @@
 #include "files/html.h"
 #include "vps/stoppable.h"
 #include "vps_scenes/cad/colors.h"
+#include "vps_scenes/fits/check_fields.h"
 #include "vps_viewer/draw/image.h"
 #include "vps_viewer/draw/renderer.h"
 
@@ -202,6 +203,26 @@ std::string picture(Renderer& renderer, std::size_t part, const Box& box_W, cons
   return "<img alt=\"\" style=\"width:49%;display:inline-block\" src=\"" + pngInText(pngBytes(image)) + "\">";
 }
 
+/// The first pair of the table in which the part is: its deepest overlap, a contact, or its least clearance.
+/// The numbers are those of the table, which are exact, where the map measures at its vertices only.
+std::string nearestWords(const scenes::CheckResult& result, const std::string& part) {
+  const auto pair = std::ranges::find_if(
+      result.pairs, [&](const scenes::CheckedPair& one) { return one.a == part || one.b == part; });
+  if (pair == result.pairs.end()) return "";
+  const std::string other = "<b>" + escapeHtml(pair->a == part ? pair->b : pair->a) + "</b>";
+  const auto withError = [&](double length_m) {
+    return lengthOnPage(length_m) + " ± " + lengthOnPage(pair->error_m);
+  };
+  if (pair->is_uncertain) return "It is not known whether the part overlaps " + other + ".";
+  const double depth_m = pair->interference_depth_m;
+  if (isOverlapping(*pair)) return "The part overlaps " + other + " by " + withError(depth_m) + ".";
+  const std::string measured =
+      depth_m > 0 ? "overlap " + withError(depth_m) : "clearance " + withError(pair->clearance_m);
+  return pair->state == scenes::PairState::Contact
+             ? "The part touches " + other + ", to within the error: " + measured + "."
+             : "The part's least " + measured + ", to " + other + ".";
+}
+
 std::string pictures(const scenes::CheckResult& result, const Progress& progress) {
   RenderScene scene;
   std::vector<std::vector<std::array<float, 3>>> colors;
@@ -218,16 +239,11 @@ std::string pictures(const scenes::CheckResult& result, const Progress& progress
     const scenes::ClearanceMap& map = result.maps[i];
     if (progress)
       progress("drawing clearances", static_cast<double>(i) / static_cast<double>(result.maps.size()));
-    const double least_m = *std::ranges::min_element(map.distance_m);
     const Box box_W = bounds(map.mesh_W);
-    out +=
-        "<figure class=\"section\">" + picture(renderer, i, box_W, Vec3(0.75, -1.25, 0.85)) +
-        picture(renderer, i, box_W, Vec3(-0.75, 1.25, -0.85)) + "<figcaption><b>" + escapeHtml(map.part) +
-        "</b>, from the front, right and above, and from the opposite side. At the measured points " +
-        (least_m < 0
-             ? "the part reaches up to " + format(-1e6 * least_m, "%.2f µm") + " into another part."
-             : "the part's least distance from another part is " + format(1e6 * least_m, "%.2f µm") + ".") +
-        "</figcaption></figure>\n";
+    out += "<figure class=\"section\">" + picture(renderer, i, box_W, Vec3(0.75, -1.25, 0.85)) +
+           picture(renderer, i, box_W, Vec3(-0.75, 1.25, -0.85)) + "<figcaption><b>" + escapeHtml(map.part) +
+           "</b>, from the front, right and above, and from the opposite side. " +
+           nearestWords(result, map.part) + "</figcaption></figure>\n";
   }
   return out;
 }
@@ -251,7 +267,9 @@ std::string clearancePictures(const scenes::CheckResult& result, const Progress&
   if (result.maps.empty()) return "";
   std::string out =
       "<h2>Clearance on the surfaces</h2>\n<p>The distance of each point of a part's surface from the "
-      "nearest other part. The other part is not drawn.</p>\n" +
+      "nearest other part. The other part is not drawn. An overlap that counts as contact in the table of "
+      "pairs "
+      "has the colour of contact. On coarse curved faces the colours show the facets of the meshes.</p>\n" +
       legend(result.near_m);
   const StoppableWork work(progress, "drawing clearances");
   try {

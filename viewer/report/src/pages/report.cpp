@@ -304,14 +304,12 @@ std::string stepNotes(const scenes::AssembleResult& result) {
     if (!step.reason.empty()) note(name + step.reason + ".");
     if (step.completed && !step.by_contact && !step.is_taken_off)
       note(name + "by contact: " + contactWords(step) + ".");
-    if (!step.stands_on.empty())
-      note(name + "tried with '" + step.stands_on +
-           "' placed at its target, although that part had not reached it.");
     if (step.moved_m > 0) note(name + movedWords(step) + ".");
     if (!step.aligned_by.empty())
       note(name + "the part lies within its tolerance; later steps use it at its exact target, since '" +
            step.aligned_by + "' aligns it.");
   }
+  if (const std::string put = putAtTargetWords(result); !put.empty()) note(put + ".");
   return out;
 }
 

@@ -7,25 +7,18 @@
 #include "files/html.h"
 #include "pages/field_table.h"
 #include "vps_scenes/fits/revision_fields.h"
+#include "vps_scenes/scene/number_words.h"
 #include "vps_viewer/report/pages.h"
 #include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
-
-namespace {
-
-std::string countWords(std::size_t count, const char* one, const char* more) {
-  return std::to_string(count) + " " + (count == 1 ? one : more);
-}
-
-}  // namespace
 
 std::string revisionWords(const scenes::RevisionChanges& changes) {
   if (changes.isSame())
     return "nothing changed; the answer is '" + std::string(words(changes.new_verdict)) + "'";
   std::vector<std::string> counts;
   const auto add = [&](std::size_t count, const char* one, const char* more) {
-    if (count > 0) counts.push_back(countWords(count, one, more));
+    if (count > 0) counts.push_back(scenes::counted(count, one, more));
   };
   add(changes.parts.size(), "part", "parts");
   add(changes.pairs.size(), "clearance or overlap", "clearances or overlaps");

@@ -120,14 +120,14 @@ std::string captionOf(const scenes::CheckResult& result, const scenes::CheckedSe
         "</b>: " + (is_shaft ? "⌀ " : "width ") + format(1e3 * fit.shaft_m, "%.4f") + " in " +
         format(1e3 * fit.bore_m, "%.4f") + " mm, " +
         (fit.diametral_clearance_m < 0 ? "interference " : "clearance ") +
-        micrometres(std::abs(fit.diametral_clearance_m)) + " µm ± " + micrometres(fit.error_m) + " µm" +
+        lengthOnPage(std::abs(fit.diametral_clearance_m)) + " ± " + lengthOnPage(fit.error_m) +
         (is_shaft ? " in diameter, so half of this value to each side if centred" : " both sides together") +
         (standardOf(fit).empty() ? "" : "; " + standardOf(fit));
     out += is_shaft ? ". Section through the axis" : ". Section across the length";
   } else {
     const scenes::CheckedPair& pair = result.pairs[section.of];
     out = "<b>" + escapeHtml(pair.a) + "</b> and <b>" + escapeHtml(pair.b) + "</b> overlap by " +
-          micrometres(pair.interference_depth_m) + " µm ± " + micrometres(pair.error_m) + " µm (" +
+          lengthOnPage(pair.interference_depth_m) + " ± " + lengthOnPage(pair.error_m) + " (" +
           toText(pair.state) + "). Section through the deepest place, along the depth";
   }
   out += "; the right picture shows the small square " +

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "files/html.h"
+#include "vps_scenes/scene/number_words.h"
 
 namespace vps::viewer {
 namespace {
@@ -51,6 +52,15 @@ std::string listedNames(const std::vector<std::string>& names) {
   return out;
 }
 
+std::array<std::string, 2> toldApart(double a_m, double b_m) {
+  std::array<std::string, 2> out;
+  for (const char* form : {"%.3f", "%.4f", "%.5f", "%.6f"}) {
+    out = {html::format(1e3 * a_m, form), html::format(1e3 * b_m, form)};
+    if (out[0] != out[1]) break;
+  }
+  return out;
+}
+
 const char* words(scenes::Verdict verdict) {
   return scenes::rowOf(verdict).words;
 }
@@ -69,6 +79,24 @@ std::string contactWords(const scenes::StepResult& step) {
          "where it is";
 }
 
+std::string putAtTargetWords(const scenes::AssembleResult& result) {
+  const auto depends = [](const scenes::StepResult& step) { return !step.stands_on.empty(); };
+  const auto steps = static_cast<std::size_t>(std::ranges::count_if(result.steps, depends));
+  if (steps == 0) return {};
+  std::vector<std::string> put;
+  const auto add = [&](const std::string& part) {
+    if (!part.empty() && std::ranges::find(put, part) == put.end()) put.push_back(part);
+  };
+  for (std::size_t i = 0; i < result.steps.size(); ++i) {
+    add(result.steps[i].stands_on);
+    if (!result.steps[i].completed && i + 1 < result.steps.size()) add(result.steps[i].part);
+  }
+  const bool is_one = put.size() == 1;
+  return scenes::counted(steps, "step was", "steps were") + " tried with " + listedNames(put) + " put at " +
+         (is_one ? "its target, which this part had not reached"
+                 : "their targets as soon as they had failed to reach them");
+}
+
 std::string easeWords(const scenes::AssembleResult& result) {
   if (result.tries.empty()) return {};
   const auto good = std::count_if(result.tries.begin(), result.tries.end(), [](const scenes::TryResult& one) {
@@ -77,8 +105,7 @@ std::string easeWords(const scenes::AssembleResult& result) {
   return std::string("Ease of assembly: ")
       .append(std::to_string(good))
       .append(" of ")
-      .append(std::to_string(result.tries.size()))
-      .append(result.tries.size() == 1 ? " try" : " tries")
+      .append(scenes::counted(result.tries.size(), "try", "tries"))
       .append(isDisassembly(result) ? " took every part off." : " brought every part home.");
 }
 
@@ -93,8 +120,10 @@ std::string verdictLine(const scenes::AssembleResult& result) {
                                  [](const scenes::StepResult& s) { return scenes::isGood(s); });
   const std::string count = std::to_string(fit)
                                 .append(" of ")
-                                .append(std::to_string(result.steps.size()))
-                                .append(is_apart ? " parts come off." : " steps fit.");
+                                .append(scenes::counted(result.steps.size(), is_apart ? "part" : "step"))
+                                .append(is_apart ? " come" : " fit")
+                                .append(result.steps.size() != 1 ? "" : "s")
+                                .append(is_apart ? " off." : ".");
   switch (result.verdict) {
     case scenes::Verdict::Fits:
       return (is_apart ? "Yes, the parts come apart: " : "Yes, the parts go together: ") + count;
@@ -151,9 +180,9 @@ std::string uncertainWords(const scenes::CheckResult& result) {
       why = "because of " + part.name + ": " + part.no_inside;
   const std::size_t others = result.uncertain() - 1;
   return "it cannot be told whether " + first.a + " and " + first.b + " overlap, " + why +
-         (others == 0   ? ""
-          : others == 1 ? "; 1 other pair is uncertain, too"
-                        : "; " + std::to_string(others) + " other pairs are uncertain, too");
+         (others == 0
+              ? ""
+              : "; " + scenes::counted(others, "other pair is", "other pairs are") + " uncertain, too");
 }
 
 /// "free if 'bolt' moves by 0.050 mm along +x"; empty: nothing is moved.
@@ -163,8 +192,9 @@ std::string freeWords(const std::vector<scenes::MovedPart>& moved) {
   std::string out = "free if ";
   for (std::size_t i = 0; i < std::min(moved.size(), kMost); ++i)
     out += (i == 0 ? "" : i + 1 == moved.size() ? " and " : ", ") + motionWords(moved[i]);
-  return moved.size() > kMost ? out + " and " + std::to_string(moved.size() - kMost) + " more parts move"
-                              : out;
+  return moved.size() > kMost
+             ? out + " and " + scenes::counted(moved.size() - kMost, "more part moves", "more parts move")
+             : out;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forces and torques on the hand over time, as figure 9 of the paper.
+// Forces and torques on the hand over time, as figure 9 of Tripicchio et al.
 #include <algorithm>
 #include <array>
 #include <cmath>

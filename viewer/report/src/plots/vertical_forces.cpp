@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figure 5 of the paper: the vertical force of the dual arm over its workspace.
+// Figure 5 of Tripicchio et al.: the vertical force of the dual arm over its workspace.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,7 +56,7 @@ std::string lineBlock(const Leasts<long>& leasts) {
   return gnuplot::dataBlock("line", rows);
 }
 
-// The paper's colours, in Okabe and Ito's palette: right red, left blue, both yellow.
+// Tripicchio et al.'s colours, in Okabe and Ito's palette: right red, left blue, both yellow.
 constexpr const char* kPlotStyle = R"(
 set encoding utf8
 left = "#0072B2"; right = "#D55E00"; both = "#E69F00"; ink = "#333333"

@@ -25,13 +25,13 @@ inline constexpr auto kCheckedPairFields = std::make_tuple(
                        {.column = {.heading = "<part"}}),
     shown<CheckedPair>(field("b", &CheckedPair::b, "name of the pair's second part"),
                        {.column = {.heading = "<and"}}),
-    shown<CheckedPair>(
-        field("state", &CheckedPair::state,
-              "`apart`, `contact` (within the error), `press fit` (a declared overlap) or `clash` (an "
-              "overlap that is not declared)"),
-        {.column = {.heading = "<state",
-                    .text = stateWords,
-                    .is_bad = [](const CheckedPair& pair) { return pair.isClash(); }}}),
+    shown<CheckedPair>(field("state", &CheckedPair::state,
+                             "`apart`, `contact` (within the error, or nearer than 5 nm), `press fit` (a "
+                             "declared overlap) or `clash` (an "
+                             "overlap that is not declared)"),
+                       {.column = {.heading = "<state",
+                                   .text = stateWords,
+                                   .is_bad = [](const CheckedPair& pair) { return pair.isClash(); }}}),
     shown<CheckedPair>(field("clearance_m", &CheckedPair::clearance_m,
                              "least distance of the surfaces; 0 where the meshes overlap"),
                        {.column = {.heading = "clearance [um]",
@@ -129,7 +129,12 @@ inline constexpr auto kCheckedFitFields = std::make_tuple(
                     .is_bad = [](const CheckedFit& fit) { return fit.diametral_clearance_m < 0; }},
          .csv_place = 1,
          .error = "error_m"}),
-    field("offset_m", &CheckedFit::offset_m, "greatest distance of the axes of shaft and bore"),
+    shown<CheckedFit>(
+        field("offset_m", &CheckedFit::offset_m, "greatest distance of the axes of shaft and bore"),
+        {.column = {.heading = "axes apart [um]",
+                    .per_SI = 1e6,
+                    .is_shown = [](const CheckedFit& fit) { return fit.kind != FitKind::Key; },
+                    .is_bad = [](const CheckedFit& fit) { return fit.isEccentric(); }}}),
     shown<CheckedFit>(field("error_m", &CheckedFit::error_m,
                             "bound of the clearance's error, from the corners' distance to the faces"),
                       {.column = {.heading = "error [um]", .per_SI = 1e6}}),

@@ -2,6 +2,7 @@
 // What a check measures and reports: parts as drawn, pairs, fits, play, sections, and the verdict.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -168,11 +169,18 @@ struct CheckedFit {
   int starts = 0;
   std::string thread;                 ///< name in ISO 262, "M16" or "M16x1.5-LH"; else empty
   std::optional<CheckedPress> press;  ///< set for a shaft with interference, if a press fit is declared
+  /// Whether the axes of shaft and bore are farther apart than the clearance lets them be, by more than the
+  /// contact of faces: the parts overlap as drawn, although their sizes fit.
+  [[nodiscard]] bool isEccentric() const {
+    const double room_m = 0.5 * std::max(0.0, diametral_clearance_m);
+    return kind == FitKind::Shaft && offset_m > room_m + error_m + kContactDepth_m;
+  }
 };
 
-/// Describes the fit as a standard does: "H7/g6" or "M16". A thread that is in no standard is described by
-/// its lead, as "lead 3.2 mm, 2 starts, left-hand"; for any other fit that is in no standard the text is
-/// empty.
+/// Describes the fit as a standard does: "H7/g6" or "M16". Where a shaft is drawn beside its bore
+/// (isEccentric()), the text says so: "sizes of H7/g6, but axes 70.00 um apart". A thread that is in no
+/// standard is described by its lead, as "lead 3.2 mm, 2 starts, left-hand"; for any other fit that is in no
+/// standard the text is empty.
 VPS_SCENES_API std::string standardOf(const CheckedFit& fit);
 
 /// How far a part can move along an axis or turn about it before it touches another part; the other parts do
@@ -254,7 +262,8 @@ struct PlaneSection {
 struct ClearanceMap {
   std::string part;
   Mesh mesh_W;
-  /// For each vertex: distance to the nearest other part, at most near_m; negative inside the nearest part.
+  /// For each vertex: distance to the nearest other part, at most near_m; negative inside the nearest part,
+  /// but 0 where the depth counts as contact (CheckedPair::isBeyondContact()).
   std::vector<double> distance_m;
 };
 
@@ -295,6 +304,7 @@ struct CheckedPlaces {
 /// The result of a check.
 struct CheckResult {
   std::string assembly;
+  std::string title;  ///< heading of a page: the assembly's name without folders; empty: `assembly`
   std::vector<CheckedPair> pairs;  ///< sorted: clashes first, deep overlaps first, small clearances first
   std::vector<CheckedFit> fits;
   std::vector<CheckedPart> parts;

@@ -11,13 +11,15 @@
 namespace vps::scenes {
 
 enum class FastenerKind {
-  Screw,    ///< a round shank with a head, threaded or drawn plain
+  Screw,    ///< a thread with a head, or a plain shank whose head has faces for a wrench or a key
   Stud,     ///< a thread without a head
   Nut,      ///< a part with an internal thread, or a polygon around a plain hole
   Washer,   ///< a flat ring
   Pin,      ///< a plain cylinder
   Key,      ///< a bar between two parts
   Circlip,  ///< a thin open ring
+  /// A plain shank of a metric size with a round head: a clevis pin, or a screw drawn without thread and drive.
+  HeadedPin,
 };
 VPS_SCENES_API const char* toText(FastenerKind kind);
 

@@ -49,15 +49,19 @@ inline constexpr auto kPlannedOrderFields = std::make_tuple(
         "`way`: no path is left for `before` once `after` is in place; `carries`: `before` carries `after`"));
 static_assert(coversAllMembers<PlannedOrder>(kPlannedOrderFields));
 
+inline constexpr auto kNotFoundFields = std::make_tuple(
+    field("name", &BlockedPart::name,
+          "a part for which no path was found; nothing proves that there is none"),
+    field("by", &BlockedPart::by, "parts that stop `name` in the directions that were tried"),
+    field("is_searched", &BlockedPart::is_searched,
+          "false: the search for paths of several legs ended at its work limit"));
 inline constexpr auto kBlockedPartFields = std::make_tuple(
-    field("name", &BlockedPart::name, "a part that was not taken off"),
+    field("name", &BlockedPart::name, "a part that is proven to have no path"),
     field("by", &BlockedPart::by, "parts that stop `name` in the directions that were tried"),
     field("is_searched", &BlockedPart::is_searched,
           "false: the search for paths of several legs ended at its work limit"),
     field("enclosed_by", &BlockedPart::enclosed_by,
-          "a part that `name`, as a rigid body, is proven to be unable to leave on any path; empty: nothing "
-          "is proven, "
-          "and a path that the search did not find may exist"),
+          "a part that `name`, as a rigid body, is proven to be unable to leave on any path"),
     field("moves_m", &BlockedPart::moves_m,
           "with `enclosed_by`: upper bound of how far the middle of the moved part can move"),
     field("turns_rad", &BlockedPart::turns_rad,
@@ -68,13 +72,18 @@ static_assert(coversAllMembers<BlockedPart>(kBlockedPartFields));
 inline constexpr auto kPlannedAssemblyFields =
     std::make_tuple(field("name", &PlannedAssembly::name, "name of the assembly or subassembly"),
                     field("fixed", &PlannedAssembly::fixed,
-                          "parts with which the assembly begins, including the blocked ones"),
+                          "parts with which the assembly begins, including those of `blocked` and `not_found`"),
                     field("fixed_reason", &PlannedAssembly::fixed_reason,
                           "why the assembly begins with the first of `fixed`, in words"),
                     list("steps", &PlannedAssembly::steps, kPlannedStepFields),
                     list("order", &PlannedAssembly::order, kPlannedOrderFields),
-                    list("blocked", &PlannedAssembly::blocked, kBlockedPartFields));
-static_assert(coversAllMembers<PlannedAssembly>(kPlannedAssemblyFields));
+                    list(
+                        "blocked", [](const PlannedAssembly& one) { return one.withoutPath(true); },
+                        kBlockedPartFields),
+                    list(
+                        "not_found", [](const PlannedAssembly& one) { return one.withoutPath(false); },
+                        kNotFoundFields));
+static_assert(coversAllMembers<PlannedAssembly, 1>(kPlannedAssemblyFields));  // `blocked` fills both lists
 
 inline constexpr auto kDrawnTwiceFields =
     std::make_tuple(field("first", &DrawnTwice::first, "a part"),
@@ -83,7 +92,7 @@ static_assert(coversAllMembers<DrawnTwice>(kDrawnTwiceFields));
 
 inline constexpr auto kFastenerFields = std::make_tuple(
     field("part", &Fastener::part, "a part with the shape of a fastener"),
-    field("kind", &Fastener::kind, "`screw`, `stud`, `nut`, `washer`, `pin`, `key`, `circlip`"),
+    field("kind", &Fastener::kind, "`screw`, `stud`, `nut`, `washer`, `pin`, `key`, `circlip`, `headed pin`"),
     field("words", &Fastener::words, "the fastener in words, with its sizes"));
 static_assert(coversAllMembers<Fastener>(kFastenerFields));
 
@@ -124,8 +133,10 @@ inline constexpr auto kPlanFields = std::make_tuple(
     field("assembly", &PlanResult::assembly, "name of the planned assembly"),
     list("fasteners", &PlanResult::fasteners, kFastenerFields),
     list("choices", &PlanResult::choices, kOverlapChoiceFields),
-    field("blocked_count", &PlanResult::blocked, "number of parts that were not taken off"),
-    field("enclosed_count", &PlanResult::enclosed, "number of these parts that are proven to have no path"),
+    field("blocked_count", &PlanResult::enclosed, "number of parts that are proven to have no path"),
+    field(
+        "not_found_count", [](const PlanResult& plan) { return plan.blocked() - plan.enclosed(); },
+        "number of parts for which no path was found, without a proof that there is none"),
     list("assemblies", &PlanResult::assemblies, kPlannedAssemblyFields),
     list("contacts", &PlanResult::contacts, kPlannedContactFields),
     list("equal", &PlanResult::equal, kEqualPartsFields),
@@ -147,7 +158,10 @@ inline constexpr auto kWayFaultFields = std::make_tuple(
     field("part", &WayFault::part, "the part that moves"),
     field("against", &WayFault::against, "the part in place that the path overlaps"),
     field("depth_m", &WayFault::depth_m, "greatest depth on the path"),
-    field("allowed_m", &WayFault::allowed_m, "allowed depth: the depth at the target, plus 10 um"),
+    field("allowed_m", &WayFault::allowed_m,
+          "allowed depth: the depth at the target, plus 10 um; a depth is a fault if it is greater by more "
+          "than "
+          "0.2 um, the error of both measurements"),
     field("at_m", &WayFault::at_W, "position of the greatest depth, in the world"),
     field("clearance_m", &WayFault::clearance_m, "for a `clearance` fault: least distance on the path"),
     field("planned_m", &WayFault::planned_m, "for a `clearance` fault: planned least distance"));

@@ -95,7 +95,16 @@ struct PlannedAssembly {
   std::string fixed_reason;        ///< why the assembly begins with the first of `fixed`, in words
   std::vector<PlannedStep> steps;  ///< in the order of assembly
   std::vector<PlannedOrder> order;
+  /// The parts without a path: those that are proven to have none (BlockedPart::enclosed_by) and those for which
+  /// none was found.
   std::vector<BlockedPart> blocked;
+  /// The parts of `blocked` that are proven to have no path, or those for which no path was found.
+  [[nodiscard]] std::vector<BlockedPart> withoutPath(bool is_proven) const {
+    std::vector<BlockedPart> out;
+    for (const BlockedPart& part : blocked)
+      if (part.enclosed_by.empty() != is_proven) out.push_back(part);
+    return out;
+  }
 };
 
 /// Two parts that touch, fit into each other, or are near.

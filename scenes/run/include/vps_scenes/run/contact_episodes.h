@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contact episodes of a trace, divided into impacts and slides as in figure 9 of the paper.
+// Contact episodes of a trace, divided into impacts and slides as in figure 9 of Tripicchio et al.
 #pragma once
 
 #include <span>

@@ -143,7 +143,7 @@ inline Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t plann
 /// Phase of the hand's work on the part.
 enum class TracePhase { Reach, Insert, Press, Rest };
 
-/// One row of the time series (figure 9 of the paper).
+/// One row of the time series (figure 9 of Tripicchio et al.).
 struct TraceRow {
   double time_s = 0;
   int step = -1;

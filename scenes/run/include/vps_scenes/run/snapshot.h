@@ -55,7 +55,7 @@ struct Snapshot {
   double time_s = 0;
   int step = -1;  ///< index into Scene::steps, -1 outside of a step
   std::vector<BodySnapshot> bodies;
-  bool has_target = false;  ///< the target is shown translucent (section 5 of the paper)
+  bool has_target = false;  ///< the target is shown translucent (section 5 of Tripicchio et al.)
   std::size_t target_part = 0;
   Pose X_WP_target;
   bool has_hand = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pointshells and voxels as meshes (figures 7 and 8 of the paper), and a scene drawn with them in place of
+// Pointshells and voxels as meshes (figures 7 and 8 of Tripicchio et al.), and a scene drawn with them in place of
 // its parts.
 #pragma once
 
@@ -43,7 +43,7 @@ struct ShownModels {
 /// The models that `--show` names: "points", "voxels".
 VPS_VIEWER_API ShownModels shownModels(const std::vector<std::string>& words);
 
-/// Pointshells and voxels in place of the parts (figures 7 and 8 of the paper): where both are shown, points
+/// Pointshells and voxels in place of the parts (figures 7 and 8 of Tripicchio et al.): where both are shown, points
 /// of the parts that a step moves and voxels of the others, as contact uses them.
 class VPS_VIEWER_API ModelView {
  public:

@@ -19,7 +19,7 @@ enum class StereoMode {
   Interleaved,  ///< alternating rows, the uppermost for the left eye: line-polarised screens
   Anaglyph,     ///< for red-cyan glasses: left red, right green and blue
   /// Two pictures, for two projectors with interference filters: each eye has its own three narrow bands of
-  /// red, green and blue, to whose colours the pictures are converted (the paper's glasses).
+  /// red, green and blue, to whose colours the pictures are converted (Tripicchio et al.'s glasses).
   Spectral,
 };
 

@@ -2,6 +2,7 @@
 // Results in words, the same on the terminal and on the pages: verdicts of runs, answers of checks.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ VPS_VIEWER_API std::string directionWords(const Vec3& d);
 /// "'a', 'b'"; of more than eight names the first eight "and 3 more".
 VPS_VIEWER_API std::string listedNames(const std::vector<std::string>& names);
 
+/// Two different lengths in millimetres, without unit, with three digits or with as many as tell them apart
+/// (six at most): "0.010" and "0.250", or "0.0104" and "0.0100".
+VPS_VIEWER_API std::array<std::string, 2> toldApart(double a_m, double b_m);
+
 /// What is known of a part without a path, to follow its name: that it is proven to be enclosed, or
 /// `not_found` with the parts that stop it and a search that ended at its limit.
 VPS_VIEWER_API std::string withoutPathWords(const scenes::BlockedPart& part, const std::string& not_found);
@@ -31,6 +36,10 @@ VPS_VIEWER_API std::string contactWords(const scenes::StepResult& step);
 /// Where the part was brought to, if its drawn place is one at which it overlaps another part
 /// (StepResult::moved_m).
 VPS_VIEWER_API std::string movedWords(const scenes::StepResult& step);
+
+/// The parts that did not reach their targets and were put there so that later steps could be tried, in one
+/// sentence for the whole run; empty if no step depends on such a part (StepResult::stands_on).
+VPS_VIEWER_API std::string putAtTargetWords(const scenes::AssembleResult& result);
 
 /// The result of several tries: "Ease of assembly: 7 of 10 tries brought every part home."; empty for a
 /// single run.

@@ -19,7 +19,7 @@
 namespace vps::viewer {
 
 /// Bound on the time between picture, sound and force of a contact, which 99 of 100 contacts keep. Source:
-/// section 2 of the paper.
+/// section 2 of Tripicchio et al.
 inline constexpr double kApart_s = 24e-3;
 
 struct LatencySettings {
