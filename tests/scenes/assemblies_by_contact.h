@@ -51,16 +51,19 @@ inline Mesh helical(Mesh gear, double helix_rad, double pitch_m) {
   return gear;
 }
 
+inline test::GearShape helicalShape() {
+  return {.module_m = 2 * kMm,
+          .teeth = 16,
+          .width_m = 20 * kMm,
+          .backlash_m = 0.2 * kMm,
+          .other_radius_m = 5 * kMm,
+          .points_per_tooth = 16,
+          .axial_steps = 10,
+          .radial_steps = 2};
+}
+
 /// A helical gear on a pin of the base, in mesh with a gear that is part of the base.
-inline std::vector<DrawnPart> helicalPair(double helix_rad) {
-  const test::GearShape shape{.module_m = 2 * kMm,
-                              .teeth = 16,
-                              .width_m = 20 * kMm,
-                              .backlash_m = 0.2 * kMm,
-                              .other_radius_m = 5 * kMm,
-                              .points_per_tooth = 16,
-                              .axial_steps = 10,
-                              .radial_steps = 2};
+inline std::vector<DrawnPart> helicalPair(double helix_rad, const test::GearShape& shape = helicalShape()) {
   const double pitch_m = test::pitchRadius(shape);
   const Mesh gear = helical(test::makeSpurGear(shape), helix_rad, pitch_m);
   const Pose half_tooth(rotationFromVector({0, 0, std::numbers::pi / shape.teeth}),

@@ -7,9 +7,12 @@
 #include <numbers>
 #include <string>
 
+#include "check/check_placed.h"
 #include "scenes/assemblies_by_contact.h"
 #include "support/units.h"
+#include "surface/placed_surface.h"
 #include "vps_scenes/planning/plan.h"
+#include "ways/way.h"
 
 namespace vps::scenes {
 namespace {
@@ -47,6 +50,31 @@ TEST(ContactWays, ASlideWithPlayPassesANub) {
 TEST(ContactWays, AHelicalGearScrewsOutOfItsMate) {
   for (const double helix_deg : {-10.0, 20.0})
     expectLeaves(helicalPair(helix_deg * std::numbers::pi / 180), std::to_string(helix_deg));
+}
+
+/// The work of the search that leads a helical gear out of its mate.
+std::uint64_t workOfContactWay(const std::vector<DrawnPart>& parts, std::uint64_t most) {
+  CheckSettings settings;
+  settings.has_play = false;
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, {});
+  const CheckResult checked = checkPlaced("test", placed, settings, {});
+  const PairMotions motions(placed, checked, Vec3::UnitZ(), {});
+  SearchWork work{most, 0};
+  EXPECT_TRUE(contactWay(motions, 1, {0}, work).has_value()) << "after " << work.done;
+  return work.done;
+}
+
+TEST(ContactWays, AScrewAsksOnlyTeethThatCanMeet) {
+  // Backlash of 134 um, as a drawing states it. Without the angles and phases of the facets, the search took
+  // 2.71 million visits for 19,200 triangles; with them it takes 1.34 million.
+  test::GearShape shape = helicalShape();
+  shape.teeth = 20;
+  shape.backlash_m = 134 * kUm;
+  shape.points_per_tooth = 24;
+  shape.axial_steps = 8;
+  const std::vector<DrawnPart> parts = helicalPair(20 * std::numbers::pi / 180, shape);
+  ASSERT_EQ(parts[1].mesh.triangles.size(), 19200U);
+  EXPECT_LT(workOfContactWay(parts, 4'000'000), 1'700'000U);
 }
 
 }  // namespace

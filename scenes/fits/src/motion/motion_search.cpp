@@ -151,10 +151,15 @@ double MotionSearch::rest_m() const {
   return most_rest_m_;
 }
 
+MotionSearch::AroundAxis::AroundAxis(const PlacedSurface& part, const Motion& motion_W)
+    : extents(*part.surface, part.X_WP.R.transpose() * motion_W.direction,
+              part.X_WP.inverse() * motion_W.center),
+      sectors(*part.surface, motion_W.in(part.X_WP.inverse()),
+              part.X_WP.R.transpose() * motion_W.direction.unitOrthogonal(), extents) {}
+
 std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motion) const {
   if (!motion.is_turn) return std::nullopt;
-  const Motion in_moving = motion.in(part_.X_WP.inverse());
-  return Turning{motion.direction, AxisExtents(*part_.surface, in_moving.direction, in_moving.center)};
+  return Turning{motion.direction, AroundAxis(part_, motion)};
 }
 
 double MotionSearch::farthestFrom(const Motion& turn, double most) const {
@@ -183,22 +188,22 @@ std::vector<MotionSearch::Near> MotionSearch::nearOf(const Motion& motion, doubl
   for (const std::size_t h : found) {
     near.push_back({h, heldAt(h), std::nullopt});
     if (!motion.is_turn) continue;
-    const PlacedSurface& held = *near.back().held.part;
-    const Motion in_held = motion.in(held.X_WP.inverse());
-    near.back().turning.emplace(*held.surface, in_held.direction, in_held.center);
+    near.back().turning.emplace(*near.back().held.part, motion);
   }
   return near;
 }
 
 double MotionSearch::pairStops(const MovingPair& pair, std::uint32_t moving, std::uint32_t held,
-                               const Piece& piece, double most, SearchWork* work, bool& is_given_up) {
+                               const Piece& piece, const std::array<double, 2>& range, SearchWork* work,
+                               bool& is_given_up) {
   const int most_steps =
       piece.motion_H.is_turn && piece.motion_H.forward_m == 0 ? kMostStepsOfTurn : kMostSteps;
+  const double most = range[1];
   MovingPair there = pair;
-  double s = 0;
+  double s = range[0];
   for (int i = 0; i < most_steps && s < most; ++i) {
     pollStop();
-    if (i > 0) there.X_HM = piece.motion_H.at(s) * piece.X_HM;
+    if (s > 0) there.X_HM = piece.motion_H.at(s) * piece.X_HM;
     if (i > 0 && work != nullptr && ++work->done >= work->most) return s;
     const double safe = safeStep(there, moving, held);
     if (safe < std::min(piece.least, most - s)) return s;
@@ -225,6 +230,17 @@ double MotionSearch::step(const Near& near, const std::optional<Turning>& turnin
     if (!motion_H.is_turn) return entry(wide, of_held, motion_H.direction);
     return std::sqrt(distance2(wide, of_held)) / std::max(std::hypot(radius_m, motion_H.forward_m), 1e-300);
   };
+  // The part of the piece during which two nodes or facets can come near, by their angles about the axis.
+  const auto timeOf = [&](const std::vector<AxisExtent> AxisExtents::*extents,
+                          const std::vector<ScrewSector> ScrewSectors::*sectors, std::uint32_t k,
+                          std::uint32_t i) {
+    if (!turning) return MeetingTime{};
+    const AroundAxis &of_moving = turning->moving, &of_held = *near.turning;
+    const AxisExtent &a = (of_moving.extents.*extents)[i], &b = (of_held.extents.*extents)[k];
+    if (!a.reaches(b, near_m, along_m)) return MeetingTime{1, 0};
+    return meetingTime((of_moving.sectors.*sectors)[i], (of_held.sectors.*sectors)[k], motion_H.forward_m,
+                       piece.turned, near_m, std::max(a.nearest_m, b.nearest_m));
+  };
   double best = most;
   if (passing != nullptr && passing->held != near.index) passing = nullptr;
   const auto passes = [&](const std::vector<std::uint8_t> PassingFacets::*what, std::uint32_t k,
@@ -233,14 +249,16 @@ double MotionSearch::step(const Near& near, const std::optional<Turning>& turnin
   };
   const auto visit = [&](std::uint32_t k, std::uint32_t i) {
     if (passes(&PassingFacets::facets, k, i)) return;
-    if (turning && !turning->moving.triangles[i].reaches(near.turning->triangles[k], near_m, along_m)) return;
+    const MeetingTime time = timeOf(&AxisExtents::triangles, &ScrewSectors::triangles, k, i);
+    const double last = std::min(best, time.to_rad);
+    if (time.isNever() || time.from_rad >= last) return;
     Triangle t = moving.triangle(i);
     for (Vec3& p : t) p = X_HM * p;
-    const double radius_m = turning ? turning->moving.triangles[i].farthest_m : 0;
+    const double radius_m = turning ? turning->moving.extents.triangles[i].farthest_m : 0;
     if (!(reaches(boxOf(t), boxOf(fixed.triangle(k)), radius_m) < best)) return;
     bool is_given_up = false;
-    const double stops = pairStops(pair, i, k, piece, best, work, is_given_up);
-    if (stops >= best) return;
+    const double stops = pairStops(pair, i, k, piece, {time.from_rad, last}, work, is_given_up);
+    if (stops >= last) return;
     best = stops;
     reach.is_given_up = is_given_up;
     reach.by = {near.index, i, k};
@@ -253,11 +271,11 @@ double MotionSearch::step(const Near& near, const std::optional<Turning>& turnin
   const auto &tree = fixed.tree().nodes(), &tree_M = moving.tree().nodes();
   const auto boundOf = [&](std::uint32_t k, std::uint32_t i) {
     if (passes(&PassingFacets::nodes, k, i)) return kMotionSearchForever;
-    if (turning && !turning->moving.nodes[i].reaches(near.turning->nodes[k], near_m, along_m))
-      return kMotionSearchForever;
-    const double radius_m = turning ? turning->moving.nodes[i].farthest_m : 0;
+    const MeetingTime time = timeOf(&AxisExtents::nodes, &ScrewSectors::nodes, k, i);
+    if (time.isNever() || !(time.from_rad < best)) return kMotionSearchForever;
+    const double radius_m = turning ? turning->moving.extents.nodes[i].farthest_m : 0;
     const Box box = moved(tree_M[i].box, X_HM);
-    const double bound = reaches(box, tree[k].box, radius_m);
+    const double bound = std::max(time.from_rad, reaches(box, tree[k].box, radius_m));
     if (!(bound < best)) return bound;
     // The plane of a flat node can separate all facets of both nodes, as safeStep() separates two facets.
     if (const PartSurface::NodePlane& plane = fixed.planes()[k]; plane.isFlat())
@@ -326,14 +344,15 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::vector<N
   const double speed = std::max(motion.is_turn ? greatestSpeed(motion, part_.box_W) : 1, 1e-300);
   const double least = kLeastStep_m / speed;
   double longest = kFirstStep_m / speed;
-  const double forward_m = turning ? motion.forward_m * motion.direction.dot(turning->axis_W) : 0;
+  const double sense = turning ? motion.direction.dot(turning->axis_W) : 0;  // -1 for the reverse motion
+  const double forward_m = sense * motion.forward_m;
   Reach reach;
   for (; reach.s < most && !reach.is_stopped; longest *= 4) {
     double free = std::min(longest, most - reach.s);
     for (std::size_t k = 0; k < near.size() && free > 0; ++k) {
       const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + free) * forward_m});
-      const Piece piece{
-          in_held[k], in_held[k].at(reach.s) * near[k].held.X_HM, free, least, {back_m, front_m}};
+      const Piece piece{in_held[k],        in_held[k].at(reach.s) * near[k].held.X_HM, free, least,
+                        {back_m, front_m}, {sense * reach.s, sense * (reach.s + free)}};
       const double here = step(near[k], turning, piece, passing, work, reach);
       if (here >= free) continue;
       free = here;

@@ -10,6 +10,7 @@
 
 #include "motion/motion.h"
 #include "motion/pair_step.h"
+#include "motion/screw_sector.h"
 #include "surface/around_axis.h"
 #include "surface/placed_surface.h"
 
@@ -104,16 +105,23 @@ class MotionSearch {
     Pose X_HM;  ///< drawn pose of the moving part in the held part's frame
     double rest_m;
   };
+  /// Where the facets of a part are, as seen from the axis of a rotation. Both parts of a pair measure angles
+  /// from one direction.
+  struct AroundAxis {
+    AxisExtents extents;
+    ScrewSectors sectors;
+    AroundAxis(const PlacedSurface& part, const Motion& motion_W);
+  };
   /// A held part that may come near during a motion.
   struct Near {
     std::size_t index;
     Held held;
-    std::optional<AxisExtents> turning;  ///< extents of the held part; set for a rotation only
+    std::optional<AroundAxis> turning;  ///< of the held part; set for a rotation only
   };
-  /// For a rotation: its axis, and the extents of the moving part around it.
+  /// For a rotation: its axis, and the moving part as seen from the axis.
   struct Turning {
     Vec3 axis_W;
-    AxisExtents moving;
+    AroundAxis moving;
   };
   /// A piece of a motion that starts at a pose and has the length `most` at most.
   struct Piece {
@@ -122,6 +130,7 @@ class MotionSearch {
     double most = 0, least = 0;  ///< length of the piece; step that counts as zero
     /// Range of a screw's advance along Turning::axis_W, from the drawn pose.
     std::array<double, 2> along_m = {};
+    TurnedAngles turned;  ///< the angles of a rotation about Turning::axis_W, from the drawn pose
   };
   [[nodiscard]] Held heldAt(std::size_t index) const;
   [[nodiscard]] std::optional<Turning> turningOf(const Motion& motion) const;
@@ -139,9 +148,10 @@ class MotionSearch {
   /// facets that stop the part, and whether the search was given up.
   double step(const Near& near, const std::optional<Turning>& turning, const Piece& piece,
               const PassingFacets* passing, SearchWork* work, Reach& reach) const;
-  /// How far one pair of facets moves on the piece before the facets touch.
+  /// How far one pair of facets moves on the piece before the facets touch, between two parameters.
   static double pairStops(const MovingPair& pair, std::uint32_t moving, std::uint32_t held,
-                          const Piece& piece, double most, SearchWork* work, bool& is_given_up);
+                          const Piece& piece, const std::array<double, 2>& range, SearchWork* work,
+                          bool& is_given_up);
 
   const PlacedSurface& part_;
   std::shared_ptr<const StandingParts> held_;

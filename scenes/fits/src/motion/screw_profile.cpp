@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "motion/screw_sector.h"
 #include "surface/around_axis.h"
 #include "vps/stoppable.h"
 
@@ -84,11 +85,7 @@ ScrewProfile::Facet ScrewProfile::seen(const Triangle& triangle_W) const {
   // A mean of three vectors of lengths a_i, at angles of at most s to each other, with weights w_i, has the
   // squared length sum w_i w_j a_i a_j cos s_ij >= (sum w_i a_i)^2 (1 - 2/3 (1 - cos s)).
   out.shrink = std::sqrt(1 - 2.0 / 3 * (1 - std::cos(span_rad)));
-  // The angle of the mean vector is the mean of the angles with weights w_i a_i, up to the deviation of the
-  // angle on a chord from a linear angle, s^3 / 24 for each of two chords. The weights differ from w_i by up
-  // to (a_max / a_min - 1) / 4 for each of two weights.
-  out.slack_m =
-      std::abs(screw_.forward_m) * (span_rad * (greatest_m / least_m - 1) / 2 + std::pow(span_rad, 3) / 12);
+  out.slack_m = phaseSlack_m(screw_.forward_m, span_rad, greatest_m / least_m);
   return out;
 }
 

@@ -61,7 +61,6 @@ Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>
 std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions,
                                                       const std::vector<std::size_t>& remaining,
                                                       const std::vector<std::size_t>& fixed) {
-  constexpr std::size_t kMostGroups = 256;
   std::vector<std::size_t> movable;
   std::ranges::set_difference(remaining, fixed, std::back_inserter(movable));
   std::vector<std::vector<std::size_t>> groups, larger;

@@ -95,6 +95,8 @@ class TakingApart {
     if (Removal found = straight(); !found.parts.empty()) return found;
     if (Removal found = smallestGroup(motions_, remaining_, fixed_, progress_); !found.parts.empty())
       return completed(std::move(found));
+    if (Removal found = screwedGroup(motions_, remaining_, fixed_, progress_); !found.parts.empty())
+      return completed(std::move(found));
     return byLegs();
   }
 
@@ -108,8 +110,21 @@ class TakingApart {
       return legWay(motions_, {part}, without(remaining_, {part}), legs_[part]);
     });
     for (const std::size_t part : without(remaining_, fixed_)) work_of_legs_ += legs_[part].done;
+    if (found.parts.empty()) found = groupAlong(GroupSeeds::OnRoundFits);
     if (found.parts.empty()) found = byContact();
     return found.parts.empty() ? groupByLegs() : found;
+  }
+
+  /// A part on a path of several legs, with the parts that it takes along.
+  Removal groupAlong(GroupSeeds seeds) {
+    const std::size_t parts = remaining_.size() - fixed_.size();
+    if (parts < 2) return {};
+    constexpr std::uint64_t kOfAll = 20'000'000;
+    const std::uint64_t left = kOfAll - std::min(kOfAll, work_along_);
+    std::vector<SearchWork> work(motions_.parts().size(), {left / parts, 0});
+    Removal found = groupAlongLegs(motions_, remaining_, fixed_, seeds, work, progress_);
+    for (const SearchWork& one : work) work_along_ += one.done;
+    return found.parts.empty() ? found : completed(std::move(found));
   }
 
   /// Searches paths that contacts suggest, for parts that no path along axes leads out. A place has three
@@ -126,7 +141,7 @@ class TakingApart {
     return found;
   }
 
-  /// The first of the smallest sets that has a path.
+  /// The first of the smallest sets that has a path; then a set along the path of one part.
   Removal groupByLegs() {
     const std::vector<std::vector<std::size_t>> groups = connectedGroups(motions_, remaining_, fixed_);
     const std::uint64_t share = shareOfWork(groups.size());
@@ -146,7 +161,8 @@ class TakingApart {
           return completed({first[static_cast<std::ptrdiff_t>(i)], std::move(*ways[i]), false, {}});
       first = end;
     }
-    return {};
+    // Larger sets than were tried may leave along the path of one of their parts.
+    return groups.size() < kMostGroups ? Removal{} : groupAlong(GroupSeeds::All);
   }
 
   [[nodiscard]] std::uint64_t shareOfWork(std::size_t searches) const {
@@ -318,6 +334,7 @@ class TakingApart {
   std::uint64_t work_of_legs_ = 0;
   std::vector<SearchWork> by_contact_;  ///< by part: the work of the last search by contacts
   std::uint64_t work_by_contact_ = 0;
+  std::uint64_t work_along_ = 0;  ///< of groupAlong()
   const std::function<void(const Removal&)>& on_removal_;
   Progress progress_;
   std::size_t last_ = 0;

@@ -34,9 +34,10 @@ struct Disassembly {
 /// no allowance for meshes; straight before screws; upwards, along round fits, sideways, down; the direction
 /// of the previous removal; the loosest fit (so that pins are in place before the parts that they locate);
 /// the highest part; the first part. If no part leaves alone, the smallest set of parts that leaves straight
-/// moves as one. If no set leaves straight, paths of several legs are searched, of single parts and then of
-/// sets, with work limits for each search and for all. The parts that remain in the end are blocked. Runs on
-/// all cores.
+/// moves as one. If no set leaves straight, the smallest set that leaves along a thread of one of its parts
+/// moves as one. Then paths of several legs are searched, of single parts, of parts that turn with all parts
+/// that they take along, and then of sets, with work limits for each search and for all. The parts that
+/// remain in the end are blocked. Runs on all cores.
 /// @param on_removal  called with each removal when the removal is found
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
                       const std::vector<std::size_t>& fixed, const Progress& progress,
@@ -47,8 +48,28 @@ Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>
 Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>& remaining,
                       const std::vector<std::size_t>& fixed, const Progress& progress);
 
+/// The smallest set of two or more parts without a fixed part that leaves along a thread that `check` found
+/// between one of its parts and a part that stays: the screw, and all parts that it takes along. Empty if no
+/// set leaves.
+Removal screwedGroup(const PairMotions& motions, const std::vector<std::size_t>& remaining,
+                     const std::vector<std::size_t>& fixed, const Progress& progress);
+
+/// The parts whose paths groupAlongLegs() tries: connectedGroups() has the groups that need no turn, unless
+/// there are too many.
+enum class GroupSeeds { OnRoundFits, All };
+
+/// The smallest set of two or more parts without a fixed part that leaves on a path of several legs of one of
+/// its parts: the part and all parts that it takes along. The path is searched as if the parts that touch the
+/// part, and then as if all parts but the fixed ones, were not there. Empty if no set is found.
+/// @param work  by part: limit of the search; receives the work done
+Removal groupAlongLegs(const PairMotions& motions, const std::vector<std::size_t>& remaining,
+                       const std::vector<std::size_t>& fixed, GroupSeeds seeds, std::vector<SearchWork>& work,
+                       const Progress& progress);
+
+/// Limit of the sets of connectedGroups().
+inline constexpr std::size_t kMostGroups = 256;
 /// Sets of parts without a fixed part, each connected by pairs that are near each other: all sets of two or
-/// more parts, smaller sets first, at most 256 sets.
+/// more parts, smaller sets first, at most kMostGroups sets.
 std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions,
                                                       const std::vector<std::size_t>& remaining,
                                                       const std::vector<std::size_t>& fixed);

@@ -156,12 +156,15 @@ class Planner {
       return step;
     }
     const std::vector<Pose> corners = cornersOf(way);
-    const PlacedSurface& part = motions_.parts()[removal.parts.front()];
-    const Vec3 center_W = part.X_WP * part.surface->solid().mass().com;
+    std::vector<Vec3> centers_W;
+    for (const std::size_t of : removal.parts) {
+      const PlacedSurface& part = motions_.parts()[of];
+      centers_W.push_back(part.X_WP * part.surface->solid().mass().com);
+    }
     step.before_W = {Pose::translation(out_m * out_W) * corners.back()};
     for (std::size_t i = corners.size(); i-- > 1;) {
       step.before_W.push_back(corners[i]);
-      appendTurn(way.legs[i - 1], corners[i - 1], center_W, step.before_W);
+      appendTurn(way.legs[i - 1], corners[i - 1], centers_W, step.before_W);
     }
     return step;
   }
@@ -170,12 +173,16 @@ class Planner {
     return way.legs.front().motion.is_turn ? Vec3(Vec3::Zero()) : Vec3(-way.legs.front().motion.direction);
   }
 
-  /// Adds poses along a turn, at most an eighth of a turn apart. The hand moves the part's centre on a
-  /// straight line between poses; the poses are close enough to keep the centre within 2 um of its circle.
-  static void appendTurn(const Leg& leg, const Pose& from_W, const Vec3& center_W, std::vector<Pose>& out) {
+  /// Adds poses along a turn, at most an eighth of a turn apart. The hand moves the centre of what it holds
+  /// on a straight line between poses; the poses are close enough to keep the centres of all parts, and so
+  /// their common centre, within 2 um of their circles.
+  static void appendTurn(const Leg& leg, const Pose& from_W, const std::vector<Vec3>& centers_W,
+                         std::vector<Pose>& out) {
     if (!leg.motion.is_turn) return;
     constexpr double kMost_rad = 0.79, kLeast_rad = 0.05, kOff_m = 2e-6;
-    const double radius_m = leg.motion.direction.cross(from_W * center_W - leg.motion.center).norm();
+    double radius_m = 0;
+    for (const Vec3& center_W : centers_W)
+      radius_m = std::max(radius_m, leg.motion.direction.cross(from_W * center_W - leg.motion.center).norm());
     const double sag_rad = 2 * std::acos(std::max(-1.0, 1 - kOff_m / std::max(radius_m, kOff_m)));
     const int pieces = static_cast<int>(std::ceil(leg.s / std::clamp(sag_rad, kLeast_rad, kMost_rad)));
     for (int k = pieces - 1; k > 0; --k) out.push_back(leg.motion.at(leg.s * k / pieces) * from_W);

@@ -39,11 +39,12 @@ struct Numbers {
 /// straight lines.
 class PartWay {
  public:
-  PartWay(const PlacedSurface& part, const PlannedStep& step) : part_(part) {
+  /// @param center_W  middle of what the step moves, about which it turns if it is a screw
+  PartWay(const PlacedSurface& part, const PlannedStep& step, const Vec3& center_W) : part_(part) {
     center_P_ = part.surface->box().center();
     radius_m_ = 0.5 * part.surface->box().size().norm();
     for (const Pose& before_W : step.before_W) poses_.push_back(before_W * part.X_WP);
-    if (step.kind == WayKind::Screw) appendTurns(step);
+    if (step.kind == WayKind::Screw) appendTurns(step, center_W);
     poses_.push_back(part.X_WP);
   }
 
@@ -84,7 +85,7 @@ class PartWay {
   }
 
   /// Appends poses along the thread, around the axis of the last leg.
-  void appendTurns(const PlannedStep& step) {
+  void appendTurns(const PlannedStep& step, const Vec3& center_W) {
     constexpr double kPiece_rad = std::numbers::pi / 4;
     constexpr int kMostPieces = 400;  // fifty turns
     if (step.lead_m == 0) return;
@@ -92,13 +93,12 @@ class PartWay {
     const double way_m = out_W.dot(poses_.back() * center_P_ - part_.X_WP * center_P_);
     const double forward_m = step.lead_m / (2 * std::numbers::pi);
     const int pieces = std::min(kMostPieces, static_cast<int>(way_m / (std::abs(forward_m) * kPiece_rad)));
-    const Vec3 center_W = part_.X_WP * center_P_;
     for (int i = pieces; i > 0; --i) {
       const double turn_rad = kPiece_rad * i;
       const Vec3 vector = (forward_m > 0 ? 1 : -1) * turn_rad * out_W;
       const Mat3 R = rotationFromVector(vector);
       const Vec3 at_W = center_W + std::abs(forward_m) * turn_rad * out_W;
-      poses_.emplace_back(R * part_.X_WP.R, at_W - R * (part_.X_WP.R * center_P_));
+      poses_.emplace_back(R * part_.X_WP.R, at_W - R * (center_W - part_.X_WP.p));
     }
   }
 
@@ -190,6 +190,19 @@ class PartWay {
   std::vector<Pose> poses_;
 };
 
+/// Middle of the part, or of the parts, that a step moves, at the target.
+Vec3 middleOf(const Placing& placing, const Numbers& numbers, const PlannedStep& step) {
+  const PlacedSurface& first = placing.parts[numbers.of.at(step.parts.front())];
+  if (step.parts.size() == 1) return first.X_WP * first.surface->box().center();
+  Box box_W;
+  for (const std::string& name : step.parts) {
+    const Box& of_part_W = placing.parts[numbers.of.at(name)].box_W;
+    box_W.add(of_part_W.min);
+    box_W.add(of_part_W.max);
+  }
+  return box_W.center();
+}
+
 }  // namespace
 
 void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progress& progress) {
@@ -209,9 +222,10 @@ void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progre
     const std::vector<std::size_t> in_place(held.begin(),
                                             held.begin() + static_cast<std::ptrdiff_t>(held_before[i]));
     double best_m = kNearWay_m;
+    const Vec3 center_W = middleOf(placing, numbers, step);
     for (const std::string& name : step.parts) {
       const std::size_t part = numbers.of.at(name);
-      const PartWay way(placing.parts[part], step);
+      const PartWay way(placing.parts[part], step, center_W);
       for (const std::size_t other : in_place)
         if (!numbers.touching.contains(std::minmax(part, other)) && way.lower(placing.parts[other], best_m))
           step.nearest = placing.parts[other].name;
