@@ -9,6 +9,7 @@
 #include <random>
 
 #include "support/random_draw.h"
+#include "vps/box_intersection.h"
 
 namespace vps {
 namespace {
@@ -56,6 +57,25 @@ TEST(Box, NoPointOfATurnedBoxIsNearerThanTheBoxAroundIt) {
       ASSERT_LE(least_m, (p - p.cwiseMax(a.min).cwiseMin(a.max)).norm() + 1e-12);
     }
   }
+}
+
+// A point lies in the intersection exactly if it lies in both boxes.
+TEST(Box, TheIntersectionHasThePointsOfBothBoxes) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  int empty = 0, within = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Box a = drawnBox(random), b = drawnBox(random), both = intersection(a, b);
+    ASSERT_EQ(both.isEmpty(), !overlap(a, b));
+    empty += both.isEmpty() ? 1 : 0;
+    const Vec3 p = 0.5 * test::drawnVector(normal, random);
+    ASSERT_EQ(isWithin(p, both), isWithin(p, a) && isWithin(p, b));
+    within += isWithin(p, both) ? 1 : 0;
+  }
+  EXPECT_GT(empty, 300);
+  EXPECT_LT(empty, 990);
+  EXPECT_GT(within, 0);
+  EXPECT_TRUE(intersection(Box(), drawnBox(random)).isEmpty());
 }
 
 }  // namespace

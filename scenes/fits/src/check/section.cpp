@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "surface/placed_surface.h"
+#include "vps/box_intersection.h"
 #include "vps/mesh_distance.h"
 #include "vps/stoppable.h"
 
@@ -106,7 +107,7 @@ CheckedSection sectionOf(const CheckedPair& pair, const PlacedSurface& a, const 
   // The deepest point often lies on a face. The plane is shifted a little towards the middle of the shared
   // box, so that it does not graze the face.
   constexpr double kInwards = 0.02;
-  const Vec3 middle_W = 0.5 * (a.box_W.min.cwiseMax(b.box_W.min) + a.box_W.max.cwiseMin(b.box_W.max));
+  const Vec3 middle_W = intersection(a.box_W, b.box_W).center();
   const Vec3 n_W = section.right_W.cross(section.up_W);
   section.at_W += kInwards * n_W.dot(middle_W - pair.at_W) * n_W;
   return section;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vps/box_intersection.h"
+
 namespace vps::scenes {
 
 namespace {
@@ -76,7 +78,7 @@ OverlapDepth deepestOf(const PlacedSurface& a, const PlacedSurface& b, double er
   if (found.depth_m > error_m)
     return has_cracks ? depthOfTorn(a, b, found, error_m)
                       : overlapDepth(a, b, {found.depth_m, found.depth_m, found.p_W});
-  const Box both{a.box_W.min.cwiseMax(b.box_W.min), a.box_W.max.cwiseMin(b.box_W.max)};
+  const Box both = intersection(a.box_W, b.box_W);
   if (!both.isEmpty() && both.size().minCoeff() > error_m)
     for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}})
       if (const Overlap flush = flushOverlap(*inner, *outer); flush.depth_m > error_m)

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "surface/surface_piece.h"
+#include "vps/box_intersection.h"
 #include "vps/stoppable.h"
 
 namespace vps::scenes {
@@ -166,7 +167,7 @@ OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Po
   const Vec3 shift = kVolumeShift_m * Vec3(0.4242, 0.5657, 0.7071).normalized();
   const Pose X_AS(X_AB.R, X_AB.p + shift), X_SA = X_AS.inverse();
   const Box box_B = moved(b.box(), X_AS);
-  const Box both{a.box().min.cwiseMax(box_B.min), a.box().max.cwiseMin(box_B.max)};
+  const Box both = intersection(a.box(), box_B);
   if (both.isEmpty()) return {};
   const Vec3 p_A = both.center();
   const Flux of_a = fluxInside(a, b, X_SA, X_SA * p_A), of_b = fluxInside(b, a, X_AS, p_A);

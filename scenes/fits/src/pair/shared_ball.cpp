@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_measures.h"
+#include "vps/box_intersection.h"
 #include "vps/stoppable.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ constexpr double kBallDirection_m = 1e-9;
 SharedBalls::SharedBalls(const PlacedSurface& a, const PlacedSurface& b)
     : a_(*a.surface), b_(*b.surface), X_WA_(a.X_WP), X_BA_(b.X_WP.inverse() * a.X_WP) {
   const Box box_A = moved(b_.box(), X_BA_.inverse());
-  both_A_ = {a_.box().min.cwiseMax(box_A.min), a_.box().max.cwiseMin(box_A.max)};
+  both_A_ = intersection(a_.box(), box_A);
 }
 
 double SharedBalls::radiusAt(const Vec3& p_A) const {

@@ -15,6 +15,7 @@
 #include "proof/clash_groups.h"
 #include "proof/pose_cover.h"
 #include "text/words.h"
+#include "vps/box_intersection.h"
 #include "vps/mesh_overlap.h"
 #include "vps/stoppable.h"
 
@@ -249,8 +250,7 @@ class PlaceSearch {
     }
     if (!(set.most_m > 0) || !std::isfinite(pair.error_m)) return {};
     // Between points of both boxes, no two move farther apart than the corners of both boxes together.
-    set.box_W.min = a->box_W.min.cwiseMax(b->box_W.min);
-    set.box_W.max = a->box_W.max.cwiseMin(b->box_W.max);
+    set.box_W = intersection(a->box_W, b->box_W);
     if (set.box_W.isEmpty()) return {};
     set.at_W = set.box_W.center();
     set.half << Vec3::Constant(set.most_m), Vec3::Constant(turn_rad);

@@ -13,6 +13,7 @@
 #include "motion/gap_program.h"
 #include "proof/inner_body.h"
 #include "surface/placed_surface.h"
+#include "vps/box_intersection.h"
 #include "vps/mesh_overlap.h"
 #include "vps/stoppable.h"
 
@@ -144,11 +145,11 @@ class CoverSearch {
     constexpr std::size_t kMostOfSide = 400;
     constexpr double kApart = 1.0 / 6;  // of the shared box's diagonal, and less as long as there is room
     const Obstacle& other = obstacles_[obstacle];
-    Box part_W = moved(part_.box(), X_WP_), other_W = moved(other.surface->box(), other.X_WP), both;
+    const Box other_W = moved(other.surface->box(), other.X_WP);
+    Box part_W = moved(part_.box(), X_WP_);
     part_W = grown(part_W, reach_m_ + set_.half.tail<3>().norm() * part_.box().size().norm());
     if (!overlap(part_W, other_W)) return;
-    both.min = part_W.min.cwiseMax(other_W.min);
-    both.max = part_W.max.cwiseMin(other_W.max);
+    const Box both = intersection(part_W, other_W);
     const double near_m = reach_m_ + set_.half.tail<3>().norm() * both.size().norm();
     const Pose X_OP = other.X_WP.inverse() * X_WP_;
     for (const bool is_of_part : {true, false}) {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "pages/pictures.h"
+#include "vps/box_intersection.h"
 
 namespace vps::viewer {
 
@@ -185,7 +186,7 @@ BookPicture stepPicture(const RenderScene& drawn, const scenes::Book& book,
   if (!close_V.isEmpty()) {
     const Box around_V =
         grown(close_V, std::max(kAround * whole_V.size().norm(), 0.5 * close_V.size().norm()));
-    whole_V = {whole_V.min.cwiseMax(around_V.min), whole_V.max.cwiseMin(around_V.max)};
+    whole_V = intersection(whole_V, around_V);
   }
   frameBook(whole_V, X_WV, aspect, picture);
   for (const BookRow& row : rowsOf(book, step)) {
