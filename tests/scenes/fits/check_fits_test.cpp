@@ -82,6 +82,23 @@ TEST(CheckFits, AShaftThatIsDrawnBesideItsBoreIsNoStandardFit) {
   }
 }
 
+// The same rod, as coarse exports have it: with 15 sides it is read as a prism, with 16 as a cylinder.
+TEST(CheckFits, AFaceOfFewSidesOnACircleSaysHowItWasRead) {
+  const auto readAs = [](int sides) {
+    return checkAssembly("test", {part("rod", makeCylinder(0.005, 0.02, sides))}, kFits).parts.at(0).read_as;
+  };
+  EXPECT_EQ(readAs(6), "");
+  for (const int sides : {7, 15, 16, 24})
+    EXPECT_TRUE(
+        readAs(sides).starts_with("a face of " + std::to_string(sides) +
+                                  " flat sides, whose corners lie on a circle of 10.000 mm, is read as a " +
+                                  (sides < 16 ? "prism" : "cylinder")))
+        << sides << ": " << readAs(sides);
+  EXPECT_EQ(readAs(25), "");
+  EXPECT_EQ(checkAssembly("test", {part("box", makeBox(Vec3(0.01, 0.02, 0.03)))}, kFits).parts[0].read_as,
+            "");
+}
+
 // Other programs write facets that are divided further: the new corners lie on the flat facets, inside the
 // circle.
 TEST(CheckFits, ADividedMeshHasTheSizesOfItsCorners) {

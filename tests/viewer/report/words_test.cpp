@@ -48,9 +48,8 @@ TEST(Words, PartsThatWerePutAtTheirTargetsAreToldOnceForTheRun) {
   EXPECT_EQ(putAtTargetWords(result),
             "2 steps were tried with 'peg' put at its target, which this part had not reached");
   result.steps[1].completed = false;
-  EXPECT_EQ(
-      putAtTargetWords(result),
-      "2 steps were tried with 'peg', 'pin' put at their targets as soon as they had failed to reach them");
+  EXPECT_EQ(putAtTargetWords(result),
+            "2 steps were tried with 'peg', 'pin', each put at its target, which it had not reached");
 }
 
 TEST(Words, AVerdictOfOneStepIsSingular) {

@@ -109,6 +109,8 @@ std::string checkTables(const scenes::CheckResult& result) {
       std::ranges::any_of(result.fits, [](const scenes::CheckedFit& fit) { return fit.press.has_value(); });
   if (is_pressed) out += pressTable(result) + "\n";
   out += undrawnPressFits(result);
+  for (const scenes::CheckedPart& part : result.parts)
+    if (!part.read_as.empty()) out += part.name + ": " + part.read_as + "\n";
   const bool has_play =
       std::ranges::any_of(result.parts, [](const scenes::CheckedPart& p) { return p.play.has_value(); });
   if (has_play) out += partTable(result) + "\n";

@@ -14,6 +14,7 @@
 #include "pair/pair_measures.h"
 #include "proof/places.h"
 #include "rules/asked_pairs.h"
+#include "surface/few_sides.h"
 #include "surface/placed_surface.h"
 #include "vps/mesh_repair.h"
 #include "vps/stoppable.h"
@@ -196,6 +197,7 @@ CheckedPart describePart(const PlacedSurface& part) {
     out.chord_error_m = std::max(out.chord_error_m, part.surface->chord_m(i));
   const MeshReport& report = part.surface->solid().report();
   out.no_inside = part.surface->noInside();
+  if (!part.drawn->chord_m) out.read_as = fewSidesWords(*part.surface);
   out.within = part.drawn->within;
   if (!report.isClosed() || part.surface->solid().isByWinding()) out.mesh_faults = describe(report);
   return out;

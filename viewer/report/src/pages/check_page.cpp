@@ -150,8 +150,12 @@ std::string meshes(const scenes::CheckResult& result) {
                     {micrometres(part.chord_error_m), "n"},
                     {escapeHtml(part.mesh_faults), ""},
                     {escapeHtml(part.no_inside), part.no_inside.empty() ? "" : "bad"}});
+  std::string read;
+  for (const scenes::CheckedPart& part : result.parts)
+    if (!part.read_as.empty()) read += "<p>" + escapeHtml(part.name + ": " + part.read_as) + ".</p>\n";
   return "<h2>Meshes</h2>\n" +
-         html::table({"part", "triangles", "distance from curved faces [µm]", "faults", "no inside"}, rows);
+         html::table({"part", "triangles", "distance from curved faces [µm]", "faults", "no inside"}, rows) +
+         read;
 }
 
 }  // namespace

@@ -111,6 +111,7 @@ std::string drawn(const scenes::CheckedSection& section, const Window& window, c
 }
 
 std::string captionOf(const scenes::CheckResult& result, const scenes::CheckedSection& section) {
+  constexpr double kZero_m = 5e-9;  // is written as 0.00 µm
   std::string out;
   if (section.is_fit) {
     const scenes::CheckedFit& fit = result.fits[section.of];
@@ -119,7 +120,7 @@ std::string captionOf(const scenes::CheckResult& result, const scenes::CheckedSe
         "<b>" + escapeHtml(fit.shaft) + "</b> in <b>" + escapeHtml(fit.bore) +
         "</b>: " + (is_shaft ? "⌀ " : "width ") + format(1e3 * fit.shaft_m, "%.4f") + " in " +
         format(1e3 * fit.bore_m, "%.4f") + " mm, " +
-        (fit.diametral_clearance_m < 0 ? "interference " : "clearance ") +
+        (fit.diametral_clearance_m < -kZero_m ? "interference " : "clearance ") +
         lengthOnPage(std::abs(fit.diametral_clearance_m)) + " ± " + lengthOnPage(fit.error_m) +
         (is_shaft ? " in diameter, so half of this value to each side if centred" : " both sides together") +
         (standardOf(fit).empty() ? "" : "; " + standardOf(fit));

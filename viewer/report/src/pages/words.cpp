@@ -91,10 +91,9 @@ std::string putAtTargetWords(const scenes::AssembleResult& result) {
     add(result.steps[i].stands_on);
     if (!result.steps[i].completed && i + 1 < result.steps.size()) add(result.steps[i].part);
   }
-  const bool is_one = put.size() == 1;
-  return scenes::counted(steps, "step was", "steps were") + " tried with " + listedNames(put) + " put at " +
-         (is_one ? "its target, which this part had not reached"
-                 : "their targets as soon as they had failed to reach them");
+  return scenes::counted(steps, "step was", "steps were") + " tried with " + listedNames(put) +
+         (put.size() == 1 ? " put at its target, which this part had not reached"
+                          : ", each put at its target, which it had not reached");
 }
 
 std::string easeWords(const scenes::AssembleResult& result) {

@@ -185,6 +185,10 @@ inline constexpr auto kCheckedPartFields = std::make_tuple(
     field("mesh_faults", &CheckedPart::mesh_faults, "faults of the mesh in words; empty: the mesh is closed"),
     field("no_inside", &CheckedPart::no_inside,
           "why the surface, or a part of it, encloses no volume; empty: the surface bounds a solid"),
+    field(
+        "read_as", &CheckedPart::read_as,
+        "how faces of 7 to 24 flat sides, whose corners lie on a circle, were read: as prism or as cylinder; "
+        "empty: there are none"),
     group("", &CheckedPart::play, kPlayFields),
     field("play_error_m", &CheckedPart::play_error_m,
           "bound of the error of `play_m` at contacts that are at right angles to the motion"),

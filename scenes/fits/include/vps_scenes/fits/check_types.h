@@ -209,6 +209,9 @@ struct CheckedPart {
   double chord_error_m = 0;  ///< greatest distance of the mesh from its curved faces
   std::string mesh_faults;   ///< in words; empty for a closed mesh
   std::string no_inside;     ///< why the surface, or a part of it, encloses no volume; else empty
+  /// How faces of few flat sides that may be meant as round were read, in words; empty: there are none, or
+  /// the file states which of its faces are curved.
+  std::string read_as;
   /// Empty without has_play, and for a part that clashes, is pressed in, or is in a pair that was left out.
   std::optional<Play> play;
   Mat3 play_axes_W = Mat3::Identity();  ///< columns: the axes of `play`

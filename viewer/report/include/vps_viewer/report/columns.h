@@ -110,7 +110,7 @@ InMillimetres columnsInMillimetres(const std::vector<Struct>& structs, const Row
       if (column.heading.find("[um]") != std::string_view::npos && column.text == nullptr)
         is_long = std::ranges::any_of(structs, [&](const Struct& of) {
           return (column.is_shown == nullptr || column.is_shown(of)) &&
-                 std::abs(std::invoke(row.get, of)) >= kLong_m;
+                 std::isfinite(std::invoke(row.get, of)) && std::abs(std::invoke(row.get, of)) >= kLong_m;
         });
     out.push_back(is_long);
   });
