@@ -29,9 +29,9 @@ std::string metricSize(double major_m);
 /// Empty if no size of ISO 262 matches.
 std::string metricHole(double minor_m);
 
-/// The size ("M8") of a hexagon nut whose thread is drawn as a plain hole: the size whose width across flats the
-/// nut has (ISO 4032, ISO 272, and the older widths of DIN 934 and DIN 985), out of the sizes of whose threads
-/// the hole has the major or the minor diameter or the drill's. Empty if no size of ISO 262 matches.
+/// The size ("M8") of a hexagon nut whose thread is drawn as a plain hole: the size whose width across flats
+/// the nut has (ISO 4032, ISO 272, and the older widths of DIN 934 and DIN 985), out of the sizes of whose
+/// threads the hole has the major or the minor diameter or the drill's. Empty if no size of ISO 262 matches.
 std::string metricNut(double hole_m, double across_m);
 
 /// A tolerance zone: least and greatest deviation from the nominal size [m].

@@ -16,7 +16,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr std::size_t kFewest = 7, kMost = 24;
-constexpr double kFlat_rad = 1e-4;    // facets that meet at a smaller angle belong to one flat side
+constexpr double kOneSide_rad = 1e-4;    // facets that meet at a smaller angle belong to one flat side
 constexpr double kOnCircle = 2.5e-4;  // deviation of a corner from the circle, divided by its radius
 
 double turnBetween(const Vec3& a, const Vec3& b) {
@@ -66,7 +66,7 @@ class SideFinder {
       const std::uint32_t i = ring.facets[next];
       const Vec3 n = surface_.normal(i);
       if (std::ranges::none_of(ring.normals,
-                               [&](const Vec3& other) { return turnBetween(n, other) < kFlat_rad; }))
+                               [&](const Vec3& other) { return turnBetween(n, other) < kOneSide_rad; }))
         ring.normals.push_back(n);
       if (ring.normals.size() > kMost) return ring;
       const Triangle t = surface_.triangle(i);
@@ -74,8 +74,8 @@ class SideFinder {
         const std::uint32_t k = surface_.neighbours()[i][e];
         if (k == kNoFacet || std::abs(surface_.normal(k).dot(axis)) > kAlong) continue;
         const double turn_rad = turnBetween(n, surface_.normal(k));
-        if (turn_rad >= kFlat_rad && !isBend(turn_rad)) continue;
-        if (turn_rad >= kFlat_rad) ring.corners.insert(ring.corners.end(), {t[e], t[(e + 1) % 3]});
+        if (turn_rad >= kOneSide_rad && !isBend(turn_rad)) continue;
+        if (turn_rad >= kOneSide_rad) ring.corners.insert(ring.corners.end(), {t[e], t[(e + 1) % 3]});
         if (known.insert(k).second) ring.facets.push_back(k);
       }
     }
@@ -144,7 +144,7 @@ std::string fewSidesWords(const PartSurface& surface) {
     for (const std::uint32_t i : face.facets) {
       const Vec3 n = surface.normal(i);
       if (normals.size() <= kMost &&
-          std::ranges::none_of(normals, [&](const Vec3& other) { return turnBetween(n, other) < kFlat_rad; }))
+          std::ranges::none_of(normals, [&](const Vec3& other) { return turnBetween(n, other) < kOneSide_rad; }))
         normals.push_back(n);
     }
     if (normals.size() > kMost || !isAllAround(surface, face)) continue;

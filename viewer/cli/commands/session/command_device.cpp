@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps device --characterise: Table 1 and figure 5 of Tripicchio et al. (see README.md) for the simulated dual arm.
-// vps device --list: the kinds of device.
-// vps device --session NAME: the process of the device in a run that vps render computes.
+// vps device --characterise: Table 1 and figure 5 of Tripicchio et al. (see README.md) for the simulated dual
+// arm. vps device --list: the kinds of device. vps device --session NAME: the process of the device in a run
+// that vps render computes.
 #include <cstdio>
 #include <memory>
 #include <optional>

@@ -18,7 +18,8 @@ enum class FastenerKind {
   Pin,      ///< a plain cylinder
   Key,      ///< a bar between two parts
   Circlip,  ///< a thin open ring
-  /// A plain shank of a metric size with a round head: a clevis pin, or a screw drawn without thread and drive.
+  /// A plain shank of a metric size with a round head: a clevis pin, or a screw drawn without thread and
+  /// drive.
   HeadedPin,
 };
 VPS_SCENES_API const char* toText(FastenerKind kind);

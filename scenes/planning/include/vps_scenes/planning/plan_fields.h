@@ -49,12 +49,12 @@ inline constexpr auto kPlannedOrderFields = std::make_tuple(
         "`way`: no path is left for `before` once `after` is in place; `carries`: `before` carries `after`"));
 static_assert(coversAllMembers<PlannedOrder>(kPlannedOrderFields));
 
-inline constexpr auto kNotFoundFields = std::make_tuple(
-    field("name", &BlockedPart::name,
-          "a part for which no path was found; nothing proves that there is none"),
-    field("by", &BlockedPart::by, "parts that stop `name` in the directions that were tried"),
-    field("is_searched", &BlockedPart::is_searched,
-          "false: the search for paths of several legs ended at its work limit"));
+inline constexpr auto kNotFoundFields =
+    std::make_tuple(field("name", &BlockedPart::name,
+                          "a part for which no path was found; nothing proves that there is none"),
+                    field("by", &BlockedPart::by, "parts that stop `name` in the directions that were tried"),
+                    field("is_searched", &BlockedPart::is_searched,
+                          "false: the search for paths of several legs ended at its work limit"));
 inline constexpr auto kBlockedPartFields = std::make_tuple(
     field("name", &BlockedPart::name, "a part that is proven to have no path"),
     field("by", &BlockedPart::by, "parts that stop `name` in the directions that were tried"),
@@ -69,20 +69,18 @@ inline constexpr auto kBlockedPartFields = std::make_tuple(
           "that of a round part"));
 static_assert(coversAllMembers<BlockedPart>(kBlockedPartFields));
 
-inline constexpr auto kPlannedAssemblyFields =
-    std::make_tuple(field("name", &PlannedAssembly::name, "name of the assembly or subassembly"),
-                    field("fixed", &PlannedAssembly::fixed,
-                          "parts with which the assembly begins, including those of `blocked` and `not_found`"),
-                    field("fixed_reason", &PlannedAssembly::fixed_reason,
-                          "why the assembly begins with the first of `fixed`, in words"),
-                    list("steps", &PlannedAssembly::steps, kPlannedStepFields),
-                    list("order", &PlannedAssembly::order, kPlannedOrderFields),
-                    list(
-                        "blocked", [](const PlannedAssembly& one) { return one.withoutPath(true); },
-                        kBlockedPartFields),
-                    list(
-                        "not_found", [](const PlannedAssembly& one) { return one.withoutPath(false); },
-                        kNotFoundFields));
+inline constexpr auto kPlannedAssemblyFields = std::make_tuple(
+    field("name", &PlannedAssembly::name, "name of the assembly or subassembly"),
+    field("fixed", &PlannedAssembly::fixed,
+          "parts with which the assembly begins, including those of `blocked` and `not_found`"),
+    field("fixed_reason", &PlannedAssembly::fixed_reason,
+          "why the assembly begins with the first of `fixed`, in words"),
+    list("steps", &PlannedAssembly::steps, kPlannedStepFields),
+    list("order", &PlannedAssembly::order, kPlannedOrderFields),
+    list(
+        "blocked", [](const PlannedAssembly& one) { return one.withoutPath(true); }, kBlockedPartFields),
+    list(
+        "not_found", [](const PlannedAssembly& one) { return one.withoutPath(false); }, kNotFoundFields));
 static_assert(coversAllMembers<PlannedAssembly, 1>(kPlannedAssemblyFields));  // `blocked` fills both lists
 
 inline constexpr auto kDrawnTwiceFields =

@@ -95,8 +95,8 @@ struct PlannedAssembly {
   std::string fixed_reason;        ///< why the assembly begins with the first of `fixed`, in words
   std::vector<PlannedStep> steps;  ///< in the order of assembly
   std::vector<PlannedOrder> order;
-  /// The parts without a path: those that are proven to have none (BlockedPart::enclosed_by) and those for which
-  /// none was found.
+  /// The parts without a path: those that are proven to have none (BlockedPart::enclosed_by) and those for
+  /// which none was found.
   std::vector<BlockedPart> blocked;
   /// The parts of `blocked` that are proven to have no path, or those for which no path was found.
   [[nodiscard]] std::vector<BlockedPart> withoutPath(bool is_proven) const {

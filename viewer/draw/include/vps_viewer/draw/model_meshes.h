@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pointshells and voxels as meshes (figures 7 and 8 of Tripicchio et al.), and a scene drawn with them in place of
-// its parts.
+// Pointshells and voxels as meshes (figures 7 and 8 of Tripicchio et al.), and a scene drawn with them in
+// place of its parts.
 #pragma once
 
 #include <array>
@@ -43,8 +43,8 @@ struct ShownModels {
 /// The models that `--show` names: "points", "voxels".
 VPS_VIEWER_API ShownModels shownModels(const std::vector<std::string>& words);
 
-/// Pointshells and voxels in place of the parts (figures 7 and 8 of Tripicchio et al.): where both are shown, points
-/// of the parts that a step moves and voxels of the others, as contact uses them.
+/// Pointshells and voxels in place of the parts (figures 7 and 8 of Tripicchio et al.): where both are shown,
+/// points of the parts that a step moves and voxels of the others, as contact uses them.
 class VPS_VIEWER_API ModelView {
  public:
   /// Replaces the meshes of `drawn` by meshes that the ModelView owns; keep the ModelView as long as `drawn`

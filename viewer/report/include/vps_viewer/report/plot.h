@@ -38,8 +38,9 @@ struct PlotOutcome {
 /// Whether gnuplot is in a folder of PATH.
 VPS_VIEWER_API bool hasGnuplot();
 
-/// Plots forces and torques on the hand over time as figure 9 of Tripicchio et al., with marked impacts, shaded
-/// phases and named steps. Writes file + ".png" and file + ".svg"; the same trace gives the same bytes.
+/// Plots forces and torques on the hand over time as figure 9 of Tripicchio et al., with marked impacts,
+/// shaded phases and named steps. Writes file + ".png" and file + ".svg"; the same trace gives the same
+/// bytes.
 /// @param step_names by index of the step; steps without a name get their number
 /// @param step       index of the only step to plot; -1: all steps
 VPS_VIEWER_API PlotOutcome plotForces(const std::vector<scenes::TraceRow>& trace, const std::string& file,
@@ -48,10 +49,10 @@ VPS_VIEWER_API PlotOutcome plotForces(const std::vector<scenes::TraceRow>& trace
 /// Plots curves over a common horizontal axis. Writes file + ".png" and file + ".svg".
 VPS_VIEWER_API PlotOutcome plotSeries(const Plot& plot, const std::string& file);
 
-/// Plots figure 5 of Tripicchio et al., the greatest vertical force of left arm, right arm and pair, for the dual arm
-/// of this program. The left diagram shows the least force in each column of the workspace, as surfaces over
-/// x and y. The right diagram shows the least force over x and z, along y, with Tripicchio et al.'s 5 N and 12 N.
-/// Writes file + ".png" and file + ".svg"; the same input gives the same bytes.
+/// Plots figure 5 of Tripicchio et al., the greatest vertical force of left arm, right arm and pair, for the
+/// dual arm of this program. The left diagram shows the least force in each column of the workspace, as
+/// surfaces over x and y. The right diagram shows the least force over x and z, along y, with Tripicchio et
+/// al.'s 5 N and 12 N. Writes file + ".png" and file + ".svg"; the same input gives the same bytes.
 VPS_VIEWER_API PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& forces,
                                               const std::string& file);
 
