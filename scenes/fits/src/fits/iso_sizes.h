@@ -29,6 +29,10 @@ std::string metricSize(double major_m);
 /// Empty if no size of ISO 262 matches.
 std::string metricHole(double minor_m);
 
+/// The thread of ISO 262 ("M8", "M8x1") whose nominal diameter the shaft has within tolerance 8g, and whose
+/// minor diameter or drill the hole has within 0.1 P; of several pitches the nearest. Empty if there is none.
+std::string metricThreadIn(double shaft_m, double hole_m);
+
 /// A tolerance zone: least and greatest deviation from the nominal size [m].
 struct Zone {
   double lower_m = 0, upper_m = 0;
