@@ -56,13 +56,13 @@ struct OverlapRule {
   PairPattern between;
   OverlapWish kind = OverlapWish::Clash;
   /// Greatest squash of a seal, divided by the width of its section; empty: kMostSquash.
-  std::optional<double> max_squash;
+  std::optional<double> max_squash = {};
 };
 
 /// How overlaps are judged that a drawing may have on purpose.
 struct OverlapWishes {
-  std::vector<OverlapRule> rules;  ///< the first rule that names a pair counts
-  bool is_strict = false;          ///< without a rule, every overlap is a clash, whatever its shape
+  std::vector<OverlapRule> rules = {};  ///< the first rule that names a pair counts
+  bool is_strict = false;               ///< without a rule, every overlap is a clash, whatever its shape
 };
 
 /// The quantity that a rule bounds.
