@@ -1,14 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `vps check` as its users run it.
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "program.h"
+#include "support/lathe.h"
 
 namespace vps {
 namespace {
 
 using nlohmann::json;
+
+/// A mesh as ASCII STL in millimetres.
+std::string stlText(const Mesh& mesh) {
+  std::string out = "solid part\n";
+  for (const auto& triangle : mesh.triangles) {
+    out += "facet normal 0 0 0\nouter loop\n";
+    for (const std::uint32_t corner : triangle) {
+      char line[120];
+      const Vec3 p = 1e3 * mesh.vertices[corner];
+      std::snprintf(line, sizeof line, "vertex %.9g %.9g %.9g\n", p.x(), p.y(), p.z());
+      out += line;
+    }
+    out += "endloop\nendfacet\n";
+  }
+  return out + "endsolid part\n";
+}
 
 class Check : public Program {
  protected:
@@ -169,6 +187,30 @@ TEST_F(Check, PartsOfTheWrongUnitAreNamed) {
   EXPECT_NE(ran.err.find("part 'speck': is 1e-09 m large; a check measures parts of 10 um to 1 km"),
             std::string::npos)
       << ran.err;
+}
+
+TEST_F(Check, AThreadThatIsDrawnAsCylindersIsNoClashUnlessItIsRefused) {
+  write("block.stl", stlText(makeTube(20e-3, 3.3235e-3, 10e-3, 48)));
+  write("screw.stl",
+        stlText(test::lathe(
+            {{0, -15e-3}, {4e-3, -15e-3}, {4e-3, 5e-3}, {7e-3, 5e-3}, {7e-3, 9e-3}, {0, 9e-3}}, 48)));
+  write("drawn.toml",
+        "unit = 'mm'\n[[part]]\nfile = 'block.stl'\nfixed = true\n[[part]]\nfile = 'screw.stl'\n");
+  const Ran ran = run("check drawn.toml --no-play --json check.json --csv check.csv --html check.html");
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("block and screw: taken for a thread M8"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("1 overlap is no clash: 1 thread; --strict-overlaps"), std::string::npos) << ran.out;
+  const json found = json::parse(slurp(folder_ / "check.json"));
+  EXPECT_EQ(found["verdict"], "fits");
+  EXPECT_EQ(found["clashes"], 0);
+  EXPECT_EQ(found["pairs"][0]["state"], "thread");
+  EXPECT_EQ(found["pairs"][0]["nominal"], "M8");
+  EXPECT_EQ(found["pairs"][0]["fastener"], "screw");
+  EXPECT_NE(slurp(folder_ / "check.csv").find("thread,block,screw,interference_depth_m,"), std::string::npos);
+  EXPECT_NE(slurp(folder_ / "check.html").find("taken for a thread M8"), std::string::npos);
+  EXPECT_EQ(run("check drawn.toml --no-play --strict-overlaps").status, 1);
+  write("rules.toml", "[[overlap]]\nbetween = ['screw', 'block']\nkind = 'clash'\n");
+  EXPECT_EQ(run("check drawn.toml --no-play --rules rules.toml").status, 1);
 }
 
 }  // namespace

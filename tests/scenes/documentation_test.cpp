@@ -209,6 +209,7 @@ TEST(Documentation, TheSceneFilesKeysAreThoseOfTheFieldTables) {
 
 TEST(Documentation, TheKeysOfARuleAreThoseOfTheFieldTable) {
   checkSection("scenes/fits/RULES.md", "rule", kSettingHead + settingLines<CheckRule>(kRuleKeys));
+  checkSection("scenes/fits/RULES.md", "overlap", kSettingHead + settingLines<OverlapRule>(kOverlapRuleKeys));
 }
 
 TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {

@@ -89,5 +89,34 @@ TEST(PairText, IsTwoNamesWithACommaBetweenThem) {
     EXPECT_THROW(pairFromText(text, "--between"), LoadError) << text;
 }
 
+TEST_F(RuleFile, OverlapsAreDeclaredBesideRules) {
+  EXPECT_TRUE(
+      load("[[overlap]]\nbetween = ['oring*', 'housing']\nkind = 'seal'\nmax_squash = 0.2\n").empty());
+  const std::vector<OverlapRule> overlaps = loadOverlapRules(path());
+  ASSERT_EQ(overlaps.size(), 1U);
+  EXPECT_EQ(overlaps[0].kind, OverlapWish::Seal);
+  EXPECT_EQ(overlaps[0].between.a, "oring*");
+  EXPECT_EQ(overlaps[0].max_squash, 0.2);
+}
+
+TEST_F(RuleFile, AMistakeInAnOverlapIsNamed) {
+  const auto refusal = [&](const std::string& text) -> std::string {
+    std::ofstream(path(), std::ios::binary) << text;
+    try {
+      loadOverlapRules(path());
+    } catch (const LoadError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_NE(refusal("[[overlap]]\nkind = 'seal'\n").find("names no pairs"), std::string::npos);
+  EXPECT_NE(refusal("[[overlap]]\nbetween = ['a', 'b']\n").find("has no 'kind'"), std::string::npos);
+  EXPECT_NE(refusal("[[overlap]]\nbetween = ['a', 'b']\nkind = 'glue'\n").find("self-tapping"),
+            std::string::npos);
+  EXPECT_NE(refusal("[[overlap]]\nbetween = ['a', 'b']\nkind = 'thread'\nmax_squash = 0.2\n")
+                .find("is for a seal only"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace vps::scenes

@@ -24,8 +24,10 @@ using scenes::PairState;
 std::string pairTable(const scenes::CheckResult& result) {
   const bool has_overlap = std::ranges::any_of(
       result.pairs, [](const scenes::CheckedPair& pair) { return pair.interference_depth_m > 0; });
-  return fieldTable(result.pairs, scenes::kCheckedPairFields) +
-         (has_overlap ? std::string(kOverlapMeaning) + "\n" : "");
+  std::string out = fieldTable(result.pairs, scenes::kCheckedPairFields) +
+                    (has_overlap ? std::string(kOverlapMeaning) + "\n" : "");
+  for (const std::string& note : knownNotes(result)) out += note + "\n";
+  return out;
 }
 
 std::string pressTable(const scenes::CheckResult& result) {
@@ -123,7 +125,8 @@ std::string checkHeadline(const scenes::CheckResult& result) {
                     counted(result.pairs.size(), is_chosen ? "chosen pair" : "pair") + " near each other, ";
   const std::string answer = assemblyWords(result);
   std::string about;
-  for (const std::string& words : {chosenWords(result), moveWords(result), ruleWords(result)})
+  for (const std::string& words :
+       {chosenWords(result), moveWords(result), knownWords(result), ruleWords(result)})
     if (!words.empty()) about += "\n" + words;
   const std::size_t clashes = result.clashes();
   if (clashes == 0)
@@ -147,8 +150,15 @@ std::string checkCsv(const scenes::CheckResult& result) {
       out += csvLine({number.object.empty() ? what : number.object, a, b, number.quantity,
                       csvNumber(number.value), csvNumber(number.error)});
   };
-  for (const scenes::CheckedPair& pair : result.pairs)
+  for (const scenes::CheckedPair& pair : result.pairs) {
     add("pair", pair.a, pair.b, pair, scenes::kCheckedPairFields);
+    // The depth of the overlap, or the squash of a seal, under the name of the state.
+    if (pair.isKnown())
+      out += csvLine({toText(pair.state), pair.a, pair.b,
+                      pair.state == PairState::Seal ? "squash" : "interference_depth_m",
+                      csvNumber(pair.state == PairState::Seal ? pair.squash : pair.interference_depth_m),
+                      csvNumber(pair.state == PairState::Seal ? 0 : pair.error_m)});
+  }
   for (const scenes::CheckedFit& fit : result.fits)
     add(toText(fit.kind), fit.shaft, fit.bore, fit, scenes::kCheckedFitFields);
   for (const scenes::CheckedPart& part : result.parts)

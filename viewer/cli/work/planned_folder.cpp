@@ -72,6 +72,12 @@ std::string planKey(const scenes::Scene& scene, const scenes::PlanSettings& sett
   for (const scenes::ScenePart& part : scene.parts) key.add(part.is_scenery ? 1.0 : 0.0);
   for (int axis = 0; axis < 3; ++axis) key.add(scene.gravity_W[axis]);
   for (const std::string& name : settings.fixed) key.add(name);
+  key.add(settings.overlaps.is_strict ? 1.0 : 0.0);
+  for (const scenes::OverlapRule& rule : settings.overlaps.rules) {
+    for (const std::string& text : {rule.between.a, rule.between.b}) key.add(text);
+    key.add(static_cast<int>(rule.kind));
+    key.add(rule.max_squash.value_or(-1));
+  }
   return key.text();
 }
 
@@ -223,6 +229,14 @@ void addPlanOptions(CLI::App& command, PlanArguments& given) {
                    "lay the parts out around the base; each is lifted over all others to its place");
   command.add_flag("--resume", given.is_resumed,
                    "continue an earlier plan into the same folder that was stopped (Ctrl-C)");
+  command
+      .add_option("--rules", given.rules,
+                  "file of rules (TOML), of which [[overlap]] counts: which overlaps are threads, seals or "
+                  "inserts")
+      ->type_name("FILE");
+  command.add_flag("--strict-overlaps", given.is_strict,
+                   "count threads that are drawn as cylinders, squashed seals and inserts as clashes, unless "
+                   "the scene or the file of rules declares them");
 }
 
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
@@ -239,6 +253,8 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   scenes::PlanSettings settings;
   settings.fixed = given.bases;
   settings.has_bench = given.has_bench;
+  settings.overlaps.is_strict = given.is_strict;
+  if (!given.rules.empty()) settings.overlaps.rules = scenes::loadOverlapRules(given.rules);
   const Unfinished unfinished(given, scene, settings);
   WrittenPlan written;
   try {

@@ -21,9 +21,11 @@ struct PlanArguments {
   bool is_forced = false;
   bool is_resumed = false;  ///< continues from the results that a stopped plan left in `out`
   bool has_bench = false;   ///< see scenes::PlanSettings
+  bool is_strict = false;   ///< scenes::OverlapWishes::is_strict
+  std::string rules;        ///< file of rules, of which [[overlap]] counts; empty: none
 };
 
-/// Adds --base, --bench and --resume.
+/// Adds --base, --bench, --resume, --rules and --strict-overlaps.
 void addPlanOptions(CLI::App& command, PlanArguments& given);
 
 /// Result of planInto().

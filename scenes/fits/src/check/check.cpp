@@ -11,6 +11,7 @@
 #include "core/machine.h"
 #include "fits/fits.h"
 #include "fits/press_fit.h"
+#include "known/judge_known.h"
 #include "pair/pair_measures.h"
 #include "proof/places.h"
 #include "rules/asked_pairs.h"
@@ -31,6 +32,12 @@ const char* toText(PairState state) {
       return "contact";
     case PairState::PressFit:
       return "press fit";
+    case PairState::Thread:
+      return "thread";
+    case PairState::Seal:
+      return "seal";
+    case PairState::Insert:
+      return "insert";
     case PairState::Clash:
       return "clash";
   }
@@ -132,28 +139,33 @@ void sortPairs(std::vector<CheckedPair>& pairs) {
   });
 }
 
-/// The pairs whose overlap cannot be judged without their fits.
+/// The pairs whose overlap cannot be judged without their fits and faces.
 PartPairs pairsToJudge(const std::vector<PlacedSurface>& parts, const std::vector<CheckedPair>& pairs) {
   std::unordered_map<std::string_view, std::size_t> index_of;
   for (std::size_t i = 0; i < parts.size(); ++i) index_of.emplace(parts[i].name, i);
   PartPairs out;
   for (const CheckedPair& pair : pairs)
-    if (needsFit(pair)) out.emplace_back(index_of.at(pair.a), index_of.at(pair.b));
+    if (needsFit(pair) || pair.isClash()) out.emplace_back(index_of.at(pair.a), index_of.at(pair.b));
   return out;
 }
 
-std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, const PartPairs& near,
-                                  const Progress& progress) {
+/// The faces of all parts of the pairs.
+FacesOfParts facesOf(const std::vector<PlacedSurface>& parts, const PartPairs& near,
+                     const Progress& progress) {
   std::vector<bool> is_near(parts.size());
   for (const auto& [a, b] : near) is_near[a] = is_near[b] = true;
-  // Parts of equal geometry share their surface, so that faces are found once for each surface.
-  std::map<const PartSurface*, FitFaces> faces;
+  FacesOfParts faces;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (is_near[i]) faces.try_emplace(parts[i].surface.get());
-  std::vector<decltype(faces)::value_type*> own;
+  std::vector<FacesOfParts::value_type*> own;
   for (auto& of_surface : faces) own.push_back(&of_surface);
   forEachOnCores(own.size(), progress, "finding round and flat faces",
                  [&](std::size_t i) { own[i]->second = fitFaces(*own[i]->first); });
+  return faces;
+}
+
+std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, const PartPairs& near,
+                                  const FacesOfParts& faces, const Progress& progress) {
   std::vector<std::vector<CheckedFit>> found(near.size());
   forEachOnCores(near.size(), progress, "finding fits", [&](std::size_t i) {
     const auto [a, b] = near[i];
@@ -236,10 +248,12 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   result.left_out = std::move(asked.left_out);
   result.pairs = checkPairs(placed, asked, progress);
   result.pairs_wall_s = lap_s();
-  result.fits =
-      checkFits(placed, settings.has_fits ? asked.pairs : pairsToJudge(placed, result.pairs), progress);
+  const PartPairs fitted = settings.has_fits ? asked.pairs : pairsToJudge(placed, result.pairs);
+  const FacesOfParts faces = facesOf(placed, fitted, progress);
+  result.fits = checkFits(placed, fitted, faces, progress);
   removeFalseFits(result);
   judgeByFits(placed, result);
+  judgeByKnowledge(placed, faces, settings.overlaps, progress, result);
   sortPairs(result.pairs);
   result.fits_wall_s = lap_s();
   if (settings.has_fits && settings.has_places && settings.only_parts.empty())

@@ -15,6 +15,8 @@ struct Size {
   double nominal, coarse;
   std::array<double, 3> fine = {};
 };
+/// The hole of a thread drawn as a plain hole is below the nominal size by 1 to 1.0825 pitches, within 0.1.
+constexpr double kMostBelow = 1.0825, kLeastBelow = 1, kBelowSlack = 0.1;
 constexpr std::array kSizes = {Size{1, 0.25},
                                Size{1.2, 0.25},
                                Size{1.4, 0.3},
@@ -98,9 +100,8 @@ namespace {
 
 /// Whether a hole has the minor diameter of a nut, D - 1.0825 P, or the diameter of its drill, D - P.
 bool isMinor(double hole_mm, double nominal_mm, double pitch_mm) {
-  constexpr double kMost = 1.0825, kLeast = 1, kSlack = 0.1;
   const double below = (nominal_mm - hole_mm) / pitch_mm;
-  return pitch_mm > 0 && below < kMost + kSlack && below > kLeast - kSlack;
+  return pitch_mm > 0 && below < kMostBelow + kBelowSlack && below > kLeastBelow - kBelowSlack;
 }
 
 }  // namespace
@@ -146,6 +147,26 @@ std::string metricNut(double hole_m, double across_m) {
       return nameOf(size.nominal, size.coarse, true, false);
     for (const double fine_mm : size.fine)
       if (isMinor(hole_mm, size.nominal, fine_mm)) return nameOf(size.nominal, fine_mm, false, false);
+  }
+  return "";
+}
+
+std::string metricThreadIn(double shaft_m, double hole_m) {
+  constexpr double kAbove_mm = 1e-3;
+  for (const Size& size : kSizes) {
+    const double above_mm = 1e3 * shaft_m - size.nominal;
+    if (above_mm > kAbove_mm || above_mm < lowest_mm(size.coarse)) continue;
+    double least = kBelowSlack;
+    std::string name;
+    for (const double pitch_mm : {size.coarse, size.fine[0], size.fine[1], size.fine[2]}) {
+      if (!(pitch_mm > 0)) continue;
+      const double below = (size.nominal - 1e3 * hole_m) / pitch_mm;
+      const double off = std::max({kLeastBelow - below, below - kMostBelow, 0.0});
+      if (off >= least) continue;
+      least = off;
+      name = nameOf(size.nominal, pitch_mm, pitch_mm == size.coarse, false);
+    }
+    if (!name.empty()) return name;
   }
   return "";
 }

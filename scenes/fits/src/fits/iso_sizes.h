@@ -33,6 +33,9 @@ std::string metricHole(double minor_m);
 /// the nut has (ISO 4032, ISO 272, and the older widths of DIN 934 and DIN 985), out of the sizes of whose
 /// threads the hole has the major or the minor diameter or the drill's. Empty if no size of ISO 262 matches.
 std::string metricNut(double hole_m, double across_m);
+/// The thread of ISO 262 ("M8", "M8x1") whose nominal diameter the shaft has within tolerance 8g, and whose
+/// minor diameter or drill the hole has within 0.1 P; of several pitches the nearest. Empty if there is none.
+std::string metricThreadIn(double shaft_m, double hole_m);
 
 /// A tolerance zone: least and greatest deviation from the nominal size [m].
 struct Zone {

@@ -32,6 +32,7 @@ ClashGroups::ClashGroups(const std::vector<PlacedSurface>& parts, const CheckRes
       if (other != b) continue;
       near.is_uncertain = pair->is_uncertain;
       near.is_clash = pair->isClash();
+      near.is_known = pair->isKnown();
       near.drawn_depth_m = pair->interference_depth_m;
       near.allowed_m = near.is_clash ? 0 : pair->interference_depth_m;
     }

@@ -18,6 +18,7 @@ inline constexpr std::size_t kMostBodies = 40;
 struct NearPair {
   std::size_t a = 0, b = 0;
   bool is_clash = false;
+  bool is_known = false;  ///< a thread, seal or insert, which may overlap as deep as drawn
   double drawn_depth_m = 0;
   double allowed_m = 0;  ///< drawn overlap of parts in contact, whose facets cross; more depth is not allowed
   bool is_uncertain = false;  ///< CheckedPair::is_uncertain, at the drawn places

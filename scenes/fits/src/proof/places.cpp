@@ -420,7 +420,12 @@ class PlaceSearch {
       const std::optional<CheckedPair> pair = checkPair(at[pairs[i].a], at[pairs[i].b], checked_.near_m);
       // A pair that is uncertain at its drawn place makes the whole check uncertain, but not its new place.
       const bool is_new_doubt = pair && pair->is_uncertain && !pairs[i].is_uncertain;
-      is_clash[i] = pair && (pair->state == PairState::Clash || is_new_doubt) ? 1 : 0;
+      // A thread, seal or insert may overlap as drawn. Its clearance is not known, so no deeper overlap is
+      // free.
+      const bool is_as_drawn =
+          pair && pairs[i].is_known && pair->interference_depth_m <= pairs[i].allowed_m + kContactDepth_m;
+      const bool is_overlap = pair && pair->state == PairState::Clash && !is_as_drawn;
+      is_clash[i] = is_overlap || is_new_doubt ? 1 : 0;
     });
     return std::ranges::count(is_clash, 1) == 0;
   }

@@ -27,14 +27,20 @@ bool isRigid(const PlacedSurface& part) {
 
 }  // namespace
 
-void proveEnclosed(const std::vector<PlacedSurface>& parts, std::vector<PlannedAssembly>& assemblies,
-                   const Progress& progress) {
+void proveEnclosed(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
+                   std::vector<PlannedAssembly>& assemblies, const Progress& progress) {
+  const auto isKnown = [&](const std::string& a, const std::string& b) {
+    return std::ranges::any_of(checked.pairs, [&](const CheckedPair& pair) {
+      return pair.isKnown() && ((pair.a == a && pair.b == b) || (pair.a == b && pair.b == a));
+    });
+  };
   std::vector<Question> questions;
   for (PlannedAssembly& assembly : assemblies)
     for (BlockedPart& part : assembly.blocked)
       for (const std::string& by : part.by) {
         const PlacedSurface &of = named(parts, part.name), &other = named(parts, by);
-        if (isRigid(of) && isRigid(other)) questions.push_back({&part, &of, &other, {}});
+        if (!isKnown(part.name, by) && isRigid(of) && isRigid(other))
+          questions.push_back({&part, &of, &other, {}});
       }
   if (questions.empty()) return;
   // Each question has its share of the work beforehand, so that the answers do not depend on the order.

@@ -11,9 +11,10 @@ namespace vps::scenes {
 
 /// Tries to prove of each part without a path that it cannot leave one of the parts that stop it, and sets
 /// BlockedPart::enclosed_by. Rigid parts are assumed: a part that cannot leave one part alone cannot leave
-/// the assembly in any order. Nothing is proven for parts that are like a wire. At most about a minute of one
-/// core for all parts, on all cores. Deterministic.
-void proveEnclosed(const std::vector<PlacedSurface>& parts, std::vector<PlannedAssembly>& assemblies,
-                   const Progress& progress);
+/// the assembly in any order. Nothing is proven for parts that are like a wire, nor of a thread, seal or
+/// insert whose parts overlap as drawn. At most about a minute of one core for all parts, on all cores.
+/// Deterministic.
+void proveEnclosed(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
+                   std::vector<PlannedAssembly>& assemblies, const Progress& progress);
 
 }  // namespace vps::scenes

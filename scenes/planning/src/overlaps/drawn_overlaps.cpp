@@ -5,14 +5,14 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fits/iso_sizes.h"
-
 namespace vps::scenes {
 
 const char* toText(OverlapKind kind) {
   switch (kind) {
     case OverlapKind::Thread:
       return "thread";
+    case OverlapKind::Insert:
+      return "insert";
     case OverlapKind::PressFit:
       return "press fit";
     case OverlapKind::Twice:
@@ -113,7 +113,7 @@ class Explained {
                   "' becomes scenery";
       return out;
     }
-    if (fit_ && isThread()) return thread(std::move(out));
+    if (pair_.isKnown()) return known(std::move(out));
     if (fit_ && isPressFit()) {
       out.kind = OverlapKind::PressFit;
       out.changed = fit_->shaft;
@@ -148,50 +148,41 @@ class Explained {
   [[nodiscard]] const std::optional<FastenerShape>& shapeOf(const std::string& name) const {
     return shapes_[indexOf(name)];
   }
-  [[nodiscard]] bool isScrew(const std::string& name) const {
-    const auto& shape = shapeOf(name);
-    return shape && (shape->kind == FastenerKind::Screw || shape->kind == FastenerKind::Stud ||
-                     shape->kind == FastenerKind::HeadedPin);  // may be a screw that is drawn plain
-  }
-  [[nodiscard]] bool isNut(const std::string& name) const {
-    return shapeOf(name) && shapeOf(name)->kind == FastenerKind::Nut;
-  }
-
-  /// Whether the shaft has the major diameter of a thread and the hole its minor diameter: a standard size,
-  /// or a usual ratio.
-  [[nodiscard]] bool isThread() const {
-    constexpr double kLeast = 0.05, kMost = 0.25;  // share of the diameter, from M64x4 to M1
-    if (!isScrew(fit_->shaft) && !isNut(fit_->bore)) return false;
-    const std::string size = metricSize(fit_->shaft_m);
-    if (!size.empty() && metricHole(fit_->bore_m).starts_with(size)) return true;
-    const double share = interference_m() / fit_->shaft_m;
-    return share > kLeast && share < kMost;
-  }
 
   /// Assumed: a press fit is no tighter than H7/u6 of ISO 286, whose interference is about 0.1 % of the
   /// diameter plus 40 um.
   [[nodiscard]] bool isPressFit() const { return interference_m() < 1e-3 * fit_->shaft_m + 40e-6; }
 
-  [[nodiscard]] OverlapChoice thread(OverlapChoice out) const {
-    out.kind = OverlapKind::Thread;
-    out.words = "'" + fit_->shaft + "' (" + millimetres(fit_->shaft_m) + ") is in a smaller hole of '" +
-                fit_->bore + "' (" + millimetres(fit_->bore_m) +
-                "): assumed to be a thread drawn as cylinders";
-    const bool is_hole = isNut(fit_->bore);
+  /// The choice for a thread, seal or insert, which the check has recognised.
+  [[nodiscard]] OverlapChoice known(OverlapChoice out) const {
+    out.kind = pair_.state == PairState::Seal     ? OverlapKind::Flexible
+               : pair_.state == PairState::Insert ? OverlapKind::Insert
+                                                  : OverlapKind::Thread;
+    out.words = "'" + pair_.a + "' and '" + pair_.b + "': " + pair_.explanation;
+    if (pair_.state == PairState::Seal) {
+      if (isFixed(indexOf(pair_.fastener))) return out;
+      out.left_out = pair_.fastener;
+      out.words += "; '" + out.left_out + "' becomes scenery";
+      return out;
+    }
+    return fit_ ? resized(std::move(out)) : out;
+  }
+
+  /// Makes room along the fit: a nut's hole wider, or the shaft thinner.
+  [[nodiscard]] OverlapChoice resized(OverlapChoice out) const {
+    const auto& nut = shapeOf(fit_->bore);
+    const bool is_hole = nut && nut->kind == FastenerKind::Nut;
     const std::string& name = is_hole ? fit_->bore : fit_->shaft;
     const auto& shape = shapeOf(name);
-    if (!shape) return out;
+    const double to_m = is_hole ? 0.5 * fit_->shaft_m + kPassingRoom_m : 0.5 * fit_->bore_m - kPassingRoom_m;
+    if (is_hole || (shape && shape->kind != FastenerKind::Washer && shape->kind != FastenerKind::Nut))
+      out.resized = Resized{shape->axis, shape->p, shape->from_m, shape->to_m, shape->radius_m, to_m};
+    else
+      out.resized = thinnerShaft(parts_[indexOf(name)], *fit_, to_m);
+    if (!out.resized) return out;
     out.changed = name;
-    out.resized =
-        Resized{shape->axis,
-                shape->p,
-                shape->from_m,
-                shape->to_m,
-                shape->radius_m,
-                is_hole ? 0.5 * fit_->shaft_m + kPassingRoom_m : 0.5 * fit_->bore_m - kPassingRoom_m};
-    out.words += "; the screw motion follows the thread's axis, and " +
-                 std::string(is_hole ? "the hole of '" : "the shank of '") + name + "' is made " +
-                 millimetres(2 * out.resized->to_radius_m) + " wide so that the screw can pass";
+    out.words += "; " + std::string(is_hole ? "the hole of '" : "the shank of '") + name + "' is made " +
+                 millimetres(2 * to_m) + " wide so that it can pass";
     return out;
   }
 
@@ -212,7 +203,7 @@ std::vector<OverlapChoice> overlapChoices(const std::vector<PlacedSurface>& part
     return std::ranges::find(out, name, &OverlapChoice::left_out) != out.end();
   };
   for (const CheckedPair& pair : checked.pairs)
-    if (pair.isClash() && !isLeftOut(pair.a) && !isLeftOut(pair.b))
+    if ((pair.isClash() || pair.isKnown()) && !isLeftOut(pair.a) && !isLeftOut(pair.b))
       out.push_back(Explained(pair, parts, checked, shapes, fixed).choice());
   return out;
 }

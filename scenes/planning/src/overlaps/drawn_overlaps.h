@@ -35,6 +35,10 @@ std::vector<OverlapChoice> noVolumeChoices(const std::vector<PlacedSurface>& par
 std::vector<std::size_t> leftOut(const std::vector<PlacedSurface>& parts,
                                  const std::vector<OverlapChoice>& choices);
 
+/// The cylinder of the fit's shaft from end to end, including grooves, made thinner; in the part's frame.
+/// Empty if the part has no such cylinder.
+std::optional<Resized> thinnerShaft(const PlacedSurface& shaft, const CheckedFit& fit, double to_radius_m);
+
 /// A choice for each shaft whose diameter equals that of its hole within the error: as drawn there is neither
 /// clearance nor interference, so that a run by contact cannot decide whether it passes. In the planned scene
 /// the shaft is thinner by twice kPassingRoom_m.

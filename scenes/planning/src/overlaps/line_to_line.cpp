@@ -39,26 +39,6 @@ bool isSettled(const CheckedFit& fit, const CheckResult& checked, const std::vec
          });
 }
 
-/// The cylinder of the fit's shaft from end to end, including grooves; in the part's frame.
-std::optional<Resized> thinner(const PlacedSurface& shaft, const CheckedFit& fit) {
-  const Vec3 axis_P = shaft.X_WP.R.transpose() * fit.axis_W, at_P = shaft.X_WP.inverse() * fit.at_W;
-  const double radius_m = 0.5 * fit.shaft_m, same_m = 1e-5 * fit.shaft_m + fit.error_m;
-  std::optional<Resized> out;
-  for (const RoundFace& face : shaft.surface->round()) {
-    const Vec3 r = at_P - face.p;
-    const bool is_on_axis = std::abs(face.axis.dot(axis_P)) > 0.999 &&
-                            (r - face.axis.dot(r) * face.axis).norm() <= 1e-3 * fit.shaft_m;
-    if (face.is_bore || !is_on_axis || std::abs(face.radius_m - radius_m) > same_m) continue;
-    if (!out) out = Resized{axis_P, at_P, 0, 0, radius_m, radius_m - kPassingRoom_m};
-    for (const double end_m : {face.from_m, face.to_m}) {
-      const double along_m = axis_P.dot(face.p + end_m * face.axis - at_P);
-      out->from_m = std::min(out->from_m, along_m);
-      out->to_m = std::max(out->to_m, along_m);
-    }
-  }
-  return out;
-}
-
 std::string wordsOf(const OverlapChoice& choice, const std::vector<std::string>& bores) {
   char sizes[120];
   std::snprintf(sizes, sizeof sizes,
@@ -70,6 +50,25 @@ std::string wordsOf(const OverlapChoice& choice, const std::vector<std::string>&
 
 }  // namespace
 
+std::optional<Resized> thinnerShaft(const PlacedSurface& shaft, const CheckedFit& fit, double to_radius_m) {
+  const Vec3 axis_P = shaft.X_WP.R.transpose() * fit.axis_W, at_P = shaft.X_WP.inverse() * fit.at_W;
+  const double radius_m = 0.5 * fit.shaft_m, same_m = 1e-5 * fit.shaft_m + fit.error_m;
+  std::optional<Resized> out;
+  for (const RoundFace& face : shaft.surface->round()) {
+    const Vec3 r = at_P - face.p;
+    const bool is_on_axis = std::abs(face.axis.dot(axis_P)) > 0.999 &&
+                            (r - face.axis.dot(r) * face.axis).norm() <= 1e-3 * fit.shaft_m;
+    if (face.is_bore || !is_on_axis || std::abs(face.radius_m - radius_m) > same_m) continue;
+    if (!out) out = Resized{axis_P, at_P, 0, 0, radius_m, to_radius_m};
+    for (const double end_m : {face.from_m, face.to_m}) {
+      const double along_m = axis_P.dot(face.p + end_m * face.axis - at_P);
+      out->from_m = std::min(out->from_m, along_m);
+      out->to_m = std::max(out->to_m, along_m);
+    }
+  }
+  return out;
+}
+
 std::vector<OverlapChoice> lineToLineChoices(const std::vector<PlacedSurface>& parts,
                                              const CheckResult& checked,
                                              const std::vector<OverlapChoice>& others) {
@@ -78,7 +77,7 @@ std::vector<OverlapChoice> lineToLineChoices(const std::vector<PlacedSurface>& p
   for (const CheckedFit& fit : checked.fits) {
     if (!isLineToLine(fit) || isSettled(fit, checked, others)) continue;
     const auto shaft = std::ranges::find(parts, fit.shaft, &PlacedSurface::name);
-    const std::optional<Resized> resized = thinner(*shaft, fit);
+    const std::optional<Resized> resized = thinnerShaft(*shaft, fit, 0.5 * fit.shaft_m - kPassingRoom_m);
     if (!resized) continue;
     const auto known = std::ranges::find_if(out, [&](const OverlapChoice& choice) {
       const Vec3 r = resized->p - choice.resized->p;

@@ -284,6 +284,7 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
   result.assembly = name;
   CheckSettings check;
   check.has_play = false;
+  check.overlaps = settings.overlaps;
   const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
   const CheckResult checked = checkPlaced(name, placed, check, progress);
   for (const CheckedPair& pair : checked.pairs) {
@@ -313,7 +314,7 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
     if (settings.has_bench) layOnBench(placing, assembly);
     measureWays(placing, assembly, progress);
   }
-  proveEnclosed(placed, result.assemblies, progress);
+  proveEnclosed(placed, checked, result.assemblies, progress);
   result.cut_motions = motions.cutMotions();
   result.contacts = contactsOf(motions, checked, progress);
   result.equal = equalParts(placed);

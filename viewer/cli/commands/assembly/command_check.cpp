@@ -31,7 +31,7 @@ struct CheckArguments {
   std::vector<std::string> between, ignored, moves;
   std::string min_gap, rules;
   CadArguments cad;
-  bool has_no_play = false;
+  bool has_no_play = false, is_strict = false;
 };
 
 struct Assembly {
@@ -70,7 +70,11 @@ void readWishes(const CheckArguments& given, scenes::CheckSettings& settings) {
     settings.between.push_back(scenes::pairFromText(pair, "--between"));
   for (const std::string& pair : given.ignored)
     settings.ignored.push_back(scenes::pairFromText(pair, "--ignore"));
-  if (!given.rules.empty()) settings.rules = scenes::loadRules(given.rules);
+  settings.overlaps.is_strict = given.is_strict;
+  if (!given.rules.empty()) {
+    settings.rules = scenes::loadRules(given.rules);
+    settings.overlaps.rules = scenes::loadOverlapRules(given.rules);
+  }
   if (given.min_gap.empty()) return;
   scenes::CheckRule& gap = settings.rules.emplace_back();
   gap.name = "--min-gap";
@@ -171,9 +175,14 @@ void addWishOptions(CLI::App& command, const std::shared_ptr<CheckArguments>& gi
                   "has less, and 3 if the error leaves that open")
       ->type_name("LENGTH");
   command
-      .add_option("--rules", given->rules,
-                  "file of rules (TOML): bounds of clearance, overlap and axis offset for pairs of parts")
+      .add_option(
+          "--rules", given->rules,
+          "file of rules (TOML): bounds of clearance, overlap and axis offset for pairs of parts, and "
+          "overlaps that are threads, seals or inserts")
       ->type_name("FILE");
+  command.add_flag("--strict-overlaps", given->is_strict,
+                   "count threads that are drawn as cylinders, squashed seals and inserts as clashes, unless "
+                   "the scene or the file of rules declares them");
   command
       .add_option("--move", given->moves,
                   "move a part before the check: PART,x,0.1mm along x, y, z or a direction like 0:1:1, or "

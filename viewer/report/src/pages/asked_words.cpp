@@ -2,6 +2,7 @@
 #include "vps_viewer/report/asked_words.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numbers>
 
@@ -79,6 +80,29 @@ std::vector<std::string> ruleNotes(const scenes::CheckResult& result) {
       note = "not judged, since its pairs were left out";
     if (!note.empty()) out.push_back("'" + count.rule + "': " + note);
   }
+  return out;
+}
+
+std::string knownWords(const scenes::CheckResult& result) {
+  constexpr std::array kStates{scenes::PairState::Thread, scenes::PairState::Seal, scenes::PairState::Insert};
+  std::string out;
+  std::size_t all = 0;
+  for (const scenes::PairState state : kStates) {
+    const auto count =
+        static_cast<std::size_t>(std::ranges::count(result.pairs, state, &scenes::CheckedPair::state));
+    if (count == 0) continue;
+    all += count;
+    out += (out.empty() ? "" : ", ") + std::to_string(count) + " " + toText(state) + (count == 1 ? "" : "s");
+  }
+  if (all == 0) return {};
+  return std::to_string(all) + (all == 1 ? " overlap is no clash: " : " overlaps are no clashes: ") + out +
+         "; --strict-overlaps counts those that are not declared as clashes";
+}
+
+std::vector<std::string> knownNotes(const scenes::CheckResult& result) {
+  std::vector<std::string> out;
+  for (const scenes::CheckedPair& pair : result.pairs)
+    if (!pair.explanation.empty()) out.push_back(pair.a + " and " + pair.b + ": " + pair.explanation);
   return out;
 }
 

@@ -35,12 +35,19 @@ std::string rules(const scenes::CheckResult& result) {
 /// Sentences about what was asked of the check, each in a paragraph.
 std::string asked(const scenes::CheckResult& result) {
   std::string out;
-  for (std::string words : {chosenWords(result), moveWords(result), ruleWords(result)}) {
+  for (std::string words : {chosenWords(result), moveWords(result), knownWords(result), ruleWords(result)}) {
     if (words.empty()) continue;
     words.front() = static_cast<char>(std::toupper(words.front()));
     out += "<p>" + escapeHtml(words) + ".</p>\n";
   }
   return out;
+}
+
+/// What was assumed about threads, seals and inserts, each in a line.
+std::string known(const scenes::CheckResult& result) {
+  std::string out;
+  for (const std::string& note : knownNotes(result)) out += "<li>" + escapeHtml(note) + ".</li>\n";
+  return out.empty() ? out : "<ul>\n" + out + "</ul>\n";
 }
 
 std::string pairs(const scenes::CheckResult& result) {
@@ -50,7 +57,7 @@ std::string pairs(const scenes::CheckResult& result) {
              "faces that they approximate; ")
              .append(kOverlapMeaning)
              .append(".</p>\n") +
-         fieldTableOnPage(result.pairs, scenes::kCheckedPairFields);
+         fieldTableOnPage(result.pairs, scenes::kCheckedPairFields) + known(result);
 }
 
 std::string fits(const scenes::CheckResult& result) {

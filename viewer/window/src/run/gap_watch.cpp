@@ -21,6 +21,9 @@ std::string describe(const std::string& other, const scenes::CheckedPair& pair) 
       std::snprintf(words, sizeof words, ": contact");
       break;
     case scenes::PairState::PressFit:
+    case scenes::PairState::Thread:
+    case scenes::PairState::Seal:
+    case scenes::PairState::Insert:
     case scenes::PairState::Clash:
       std::snprintf(words, sizeof words, ": %s, %.4g µm deep", toText(pair.state),
                     pair.interference_depth_m * 1e6);

@@ -25,13 +25,15 @@ inline constexpr auto kCheckedPairFields = std::make_tuple(
                        {.column = {.heading = "<part"}}),
     shown<CheckedPair>(field("b", &CheckedPair::b, "name of the pair's second part"),
                        {.column = {.heading = "<and"}}),
-    shown<CheckedPair>(field("state", &CheckedPair::state,
-                             "`apart`, `contact` (within the error, or nearer than 5 nm), `press fit` (a "
-                             "declared overlap) or `clash` (an "
-                             "overlap that is not declared)"),
-                       {.column = {.heading = "<state",
-                                   .text = stateWords,
-                                   .is_bad = [](const CheckedPair& pair) { return pair.isClash(); }}}),
+    shown<CheckedPair>(
+        field("state", &CheckedPair::state,
+              "`apart`, `contact` (within the error, or nearer than 5 nm), `press fit` (a declared overlap), "
+              "`thread`, `seal` or "
+              "`insert` (an overlap that is declared or recognised as such, see `explanation`), or `clash` "
+              "(any other overlap)"),
+        {.column = {.heading = "<state",
+                    .text = stateWords,
+                    .is_bad = [](const CheckedPair& pair) { return pair.isClash(); }}}),
     shown<CheckedPair>(field("clearance_m", &CheckedPair::clearance_m,
                              "least distance of the surfaces; 0 where the meshes overlap"),
                        {.column = {.heading = "clearance [um]",
@@ -65,7 +67,16 @@ inline constexpr auto kCheckedPairFields = std::make_tuple(
     field("is_uncertain", &CheckedPair::is_uncertain,
           "the check cannot decide whether the parts overlap, because one of them has a surface that "
           "encloses no volume (`no_inside`)"),
-    field("press_fit_m", &CheckedPair::press_fit_m, "declared interference (`press_fit`); 0: none"));
+    field("press_fit_m", &CheckedPair::press_fit_m, "declared interference (`press_fit`); 0: none"),
+    field(
+        "explanation", &CheckedPair::explanation,
+        "what was assumed about a thread, a seal or an insert; of a clash, why it is none; empty: nothing is "
+        "known"),
+    field("fastener", &CheckedPair::fastener,
+          "the screw, seal or insert of a thread, seal or insert; empty for other pairs"),
+    field("nominal", &CheckedPair::nominal, "nominal size of a thread, as M8; empty: none"),
+    field("squash", &CheckedPair::squash,
+          "greatest squash of a seal, divided by the width of its section; 0: no seal"));
 static_assert(coversAllMembers<CheckedPair>(kCheckedPairFields));
 
 inline constexpr auto kPressFields = std::make_tuple(

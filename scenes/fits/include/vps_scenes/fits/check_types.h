@@ -78,6 +78,8 @@ struct CheckSettings {
   std::vector<PairPattern> between = {}, ignored = {};
   /// Rules that the result judges. Pairs of a rule with a clearance are measured up to that clearance.
   std::vector<CheckRule> rules = {};
+  /// How overlaps are judged that a drawing may have on purpose: threads, seals, inserts.
+  OverlapWishes overlaps = {};
 };
 
 /// An overlap that exceeds its error by no more than this depth counts as contact and not as a clash, for
@@ -90,7 +92,10 @@ enum class PairState {
   Apart,     ///< the clearance is more than its error
   Contact,   ///< the surfaces meet to within the error and kContactDepth_m; coincident faces are contact
   PressFit,  ///< the parts overlap by more than contact allows, and by no more than a declared press fit
-  Clash,     ///< the parts overlap by more than contact and any declared press fit allow
+  Thread,    ///< a screw in its nut or hole: drawn as cylinders, out of phase, or self-tapping
+  Seal,      ///< a seal that is drawn undeformed in its groove
+  Insert,    ///< an insert that is pressed or melted into a smaller hole
+  Clash,     ///< the parts overlap by more than contact allows, and nothing declared or known explains it
 };
 VPS_SCENES_API const char* toText(PairState state);
 
@@ -114,7 +119,15 @@ struct CheckedPair {
   /// an inside (CheckedPart::no_inside). `state` of an uncertain pair describes the surfaces alone.
   bool is_uncertain = false;
   double press_fit_m = 0;  ///< declared interference, the greater of both parts'; 0: none
+  /// What was assumed about a thread, a seal or an insert; or, of a clash, why it is none. Empty: nothing is
+  /// known.
+  std::string explanation = {};
+  std::string fastener = {};  ///< the screw, seal or insert of the pair; empty for other pairs
+  std::string nominal = {};   ///< nominal size of a thread, "M8"; else empty
+  double squash = 0;          ///< of a seal: its greatest squash, divided by the width of its section
   [[nodiscard]] bool isClash() const { return state == PairState::Clash && !is_allowed; }
+  /// Whether the overlap is a thread, a seal or an insert.
+  [[nodiscard]] bool isKnown() const { return state > PairState::PressFit && state < PairState::Clash; }
   /// Whether the depth of the overlap exceeds its error by more than kContactDepth_m.
   [[nodiscard]] bool isBeyondContact() const { return interference_depth_m > error_m + kContactDepth_m; }
 };

@@ -40,6 +40,31 @@ struct CheckRule {
   std::optional<double> max_axis_offset_m;  ///< greatest CheckedFit::offset_m of round fits and threads
 };
 
+/// What the user says about the overlaps of pairs of parts.
+enum class OverlapWish {
+  Thread,       ///< a thread that is drawn as cylinders, of any size
+  Seal,         ///< a seal that is drawn undeformed
+  Insert,       ///< an insert that is pressed or melted into a smaller hole
+  SelfTapping,  ///< a screw that forms its thread
+  Clash,        ///< none of these, whatever the shapes suggest
+};
+/// "thread", "seal", "insert", "self-tapping" or "clash".
+VPS_SCENES_API const char* toText(OverlapWish wish);
+
+/// A declaration of the user about the overlaps of pairs of parts.
+struct OverlapRule {
+  PairPattern between;
+  OverlapWish kind = OverlapWish::Clash;
+  /// Greatest squash of a seal, divided by the width of its section; empty: kMostSquash.
+  std::optional<double> max_squash = {};
+};
+
+/// How overlaps are judged that a drawing may have on purpose.
+struct OverlapWishes {
+  std::vector<OverlapRule> rules = {};  ///< the first rule that names a pair counts
+  bool is_strict = false;               ///< without a rule, every overlap is a clash, whatever its shape
+};
+
 /// The quantity that a rule bounds.
 enum class RuleMeasure { Clearance, Overlap, AxisOffset };
 /// "clearance", "overlap" or "axis offset".

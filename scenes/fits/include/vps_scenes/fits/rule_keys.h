@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keys of `[[rule]]` in a file of rules, from which scenes/fits/RULES.md is made.
+// The keys of `[[rule]]` and `[[overlap]]` in a file of rules, from which scenes/fits/RULES.md is made.
 #pragma once
 
 #include "vps_scenes/fits/check_wishes.h"
@@ -21,5 +21,14 @@ inline constexpr auto kRuleKeys = std::make_tuple(
     field("max_axis_offset", &CheckRule::max_axis_offset_m,
           "greatest distance of the axes of shaft and bore, or of screw and nut, along the fit",
           {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "none"}));
+
+inline constexpr auto kOverlapRuleKeys = std::make_tuple(
+    Key{"between", "2 texts", "required", "the pairs, as for `[[rule]]`"},
+    Key{"kind", "text", "required",
+        "`thread`, `seal`, `insert`, `self-tapping`, or `clash`: it is none of these, whatever the shapes "
+        "suggest"},
+    field("max_squash", &OverlapRule::max_squash,
+          "greatest squash of a seal, divided by the width of its section",
+          {.range = {.min = 0, .max = 1}, .default_text = "0.3"}));
 
 }  // namespace vps::scenes

@@ -17,6 +17,10 @@ VPS_SCENES_API PairPattern pairFromText(const std::string& text, const std::stri
 /// Reads a file of rules (TOML, scenes/fits/RULES.md). Throws LoadError with file, line, key and remedy.
 VPS_SCENES_API std::vector<CheckRule> loadRules(const std::string& file);
 
+/// Reads what a file of rules says about overlaps: its tables [[overlap]]. Throws LoadError, as loadRules()
+/// does.
+VPS_SCENES_API std::vector<OverlapRule> loadOverlapRules(const std::string& file);
+
 /// Judges the rules by the numbers of a check, which must have measured all pairs within the bounds of the
 /// rules, as checkAssembly() does with CheckSettings::rules. Appends outcomes to result.rules, the broken
 /// ones first, and a count for each rule to result.rule_counts. Throws LoadError if a pattern of a rule

@@ -100,7 +100,8 @@ inline constexpr auto kOverlapChoiceFields = std::make_tuple(
           "a part that overlaps `a` as drawn, or leaves it no clearance; empty for `no volume`"),
     field(
         "kind", &OverlapChoice::kind,
-        "classification of the overlap: `thread` (drawn as cylinders), `press fit`, `twice` (drawn twice), "
+        "classification of the overlap: `thread` (as in `check`), `insert`, `press fit`, `twice` (drawn "
+        "twice), "
         "`flexible` (a spring, belt or seal drawn undeformed), `line to line` (a shaft as wide as its hole), "
         "`no volume` (a surface without a body), or `clash`: nothing explains it"),
     field("words", &OverlapChoice::words,

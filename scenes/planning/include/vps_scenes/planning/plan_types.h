@@ -10,6 +10,7 @@
 
 #include "vps_scenes/fits/check_types.h"
 #include "vps_scenes/fits/fasteners.h"
+#include "vps_scenes/fits/resized.h"
 
 namespace vps::scenes {
 
@@ -27,6 +28,7 @@ struct PlanSettings {
   /// True: the parts start next to each other around the fixed parts, and are lifted over the fixed parts.
   /// False: each part starts on its last leg, just outside the assembly.
   bool has_bench = false;
+  OverlapWishes overlaps = {};          ///< as in CheckSettings
   const PlanFindings* known = nullptr;  ///< findings of an earlier plan of the same parts; null: none
   PlanFindings* found =
       nullptr;  ///< receives the findings, also if `progress` throws; null: the findings are dropped
@@ -130,7 +132,8 @@ struct DrawnTwice {
 
 /// Classification of an overlap of two parts as drawn.
 enum class OverlapKind {
-  Thread,      ///< a screw and its nut or hole, drawn as plain cylinders
+  Thread,      ///< a screw and its nut or hole, drawn as plain cylinders or out of phase
+  Insert,      ///< an insert in a smaller hole
   PressFit,    ///< a shaft that is a little larger than its bore
   Twice,       ///< one part drawn twice
   Flexible,    ///< a spring, belt or seal that is drawn undeformed
@@ -139,13 +142,6 @@ enum class OverlapKind {
   Clash,       ///< nothing explains the overlap
 };
 VPS_SCENES_API const char* toText(OverlapKind kind);
-
-/// A cylinder of a part that is made thinner or wider, in the part's frame P.
-struct Resized {
-  Vec3 axis = Vec3::UnitZ(), p = Vec3::Zero();
-  double from_m = 0, to_m = 0;  ///< extent along the axis, measured from p
-  double from_radius_m = 0, to_radius_m = 0;
-};
 
 /// An overlap, a fit without clearance or a part without volume, and the change made to the planned scenes.
 struct OverlapChoice {

@@ -26,6 +26,14 @@ VPS_VIEWER_API std::string ruleWords(const scenes::CheckResult& result);
 /// more pairs keep it, since they are farther apart; 1 pair was left out".
 VPS_VIEWER_API std::vector<std::string> ruleNotes(const scenes::CheckResult& result);
 
+/// The overlaps that are taken for threads, seals or inserts: "3 overlaps are no clashes: 2 threads, 1 seal;
+/// --strict-overlaps counts those that are not declared as clashes". Empty if there are none.
+VPS_VIEWER_API std::string knownWords(const scenes::CheckResult& result);
+
+/// What was assumed about each thread, seal or insert, and about clashes that are nearly one, a sentence for
+/// each: "plate and screw: taken for a thread M8, drawn as cylinders: ...".
+VPS_VIEWER_API std::vector<std::string> knownNotes(const scenes::CheckResult& result);
+
 /// Why the check has no play of a part: "overlaps", or "not measured" for a part of a pair that was left out.
 VPS_VIEWER_API std::string noPlayWords(const scenes::CheckedPart& part, const scenes::CheckResult& result);
 
