@@ -168,6 +168,17 @@ TEST(Verdicts, ARunIsAsGoodAsItsWorstStepAndNotShownIfAStepIsMissing) {
   }
 }
 
+TEST(Verdicts, AMotionWithinThePlayIsRest) {
+  StepResult step;
+  step.completed = true;
+  step.late_drift_m = 2 * kRestDriftLimit_m;
+  EXPECT_FALSE(isAtRest(step));
+  EXPECT_EQ(judge(evidenceOf(step, 60)).verdict, Verdict::NotShown);
+  step.moves_in_play = true;
+  EXPECT_TRUE(isAtRest(step));
+  EXPECT_EQ(judge(evidenceOf(step, 60)).verdict, Verdict::Fits);
+}
+
 TEST(Verdicts, AStepsResultIsItsEvidence) {
   StepResult step;
   step.completed = false;

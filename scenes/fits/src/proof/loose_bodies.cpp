@@ -48,6 +48,39 @@ double MovableBody::mostMoved_m(const Eigen::Matrix<double, 6, 1>& motion, const
   return most_m;
 }
 
+bool MovableBody::allows(const Eigen::Matrix<double, 6, 1>& motion) const {
+  if (mostMoved_m(motion) > allowed_m) return false;
+  const Pose X = movedPose(Pose(), loose, motion);
+  return std::ranges::all_of(limits, [&](const FitLimit& limit) {
+    return std::ranges::all_of(
+        limit.ends_W, [&](const Vec3& p_W) { return limit.limited(X * p_W - p_W).norm() <= limit.most_m; });
+  });
+}
+
+void MovableBody::appendLimits(std::size_t variable, const Eigen::Matrix<double, 6, 1>& motion,
+                               std::vector<GapRow>& rows) const {
+  // The limit of a shaft is a circle; a polygon inside it has planes that are nearer to its middle by 2 %.
+  constexpr int kSides = 16;
+  const double inside = std::cos(std::numbers::pi / kSides);
+  const Pose X = movedPose(Pose(), loose, motion);
+  for (const FitLimit& limit : limits) {
+    std::vector<Vec3> normals_W = {limit.axis_W, -limit.axis_W};
+    if (!limit.is_key) {
+      const Vec3 u_W = limit.axis_W.unitOrthogonal(), v_W = limit.axis_W.cross(u_W);
+      normals_W.clear();
+      for (int k = 0; k < kSides; ++k) {
+        const double a = 2 * std::numbers::pi * k / kSides;
+        normals_W.emplace_back(std::cos(a) * u_W + std::sin(a) * v_W);
+      }
+    }
+    for (const Vec3& end_W : limit.ends_W)
+      for (const Vec3& n_W : normals_W) {
+        const Vec3 p_W = X * end_W;
+        rows.push_back({variable, GapRow::kHeld, p_W, -n_W, inside * limit.most_m - n_W.dot(p_W - end_W)});
+      }
+  }
+}
+
 double MovableBody::mostTurn(double most_m) const {
   // Two corners whose distance across the axis is d move by 2 d sin(turn / 2) relative to each other, which
   // is at most 2 most_m. No axis is parallel to both of the longer edges, so d is at least the second longest
@@ -70,14 +103,16 @@ std::vector<MovableBody> looseBodies(const std::vector<PlacedSurface>& parts, co
   }
   for (const CheckedPair& pair : checked.pairs)
     if (pair.state == PairState::PressFit) sets.join(index_of.at(pair.a), index_of.at(pair.b));
-  std::vector<double> allowed_m(parts.size(), kSightTolerance_m);
+  std::vector<std::vector<FitLimit>> limits(parts.size());
   for (const CheckedFit& fit : checked.fits) {
     // A fit within a body, such as a bushing pressed into a lever, does not position the body.
     if (sets.of(index_of.at(fit.shaft)) == sets.of(index_of.at(fit.bore))) continue;
-    for (const std::string& name : {fit.shaft, fit.bore}) {
-      double& least_m = allowed_m[index_of.at(name)];
-      least_m = std::min(least_m, fitTolerance_m(fit.diametral_clearance_m));
-    }
+    const Vec3 half_W = 0.5 * fit.length_m * fit.along_W;
+    const FitLimit limit{{fit.at_W - half_W, fit.at_W + half_W},
+                         fit.axis_W,
+                         fit.kind == FitKind::Key,
+                         fitTolerance_m(fit.diametral_clearance_m)};
+    for (const std::string& name : {fit.shaft, fit.bore}) limits[index_of.at(name)].push_back(limit);
   }
   std::vector<MovableBody> bodies;
   std::vector<std::size_t> at(parts.size(), parts.size());
@@ -90,12 +125,12 @@ std::vector<MovableBody> looseBodies(const std::vector<PlacedSurface>& parts, co
     MovableBody& of = bodies[body];
     of.parts.push_back(i);
     of.is_fixed = of.is_fixed || parts[i].drawn->is_fixed;
-    of.allowed_m = std::min(of.allowed_m, allowed_m[i]);
+    of.limits.insert(of.limits.end(), limits[i].begin(), limits[i].end());
     of.box_W.add(parts[i].box_W.min);
     of.box_W.add(parts[i].box_W.max);
   }
   for (MovableBody& body : bodies) {
-    if (body.is_fixed) body.allowed_m = 0;
+    if (body.is_fixed) body.allowed_m = 0, body.limits.clear();
     body.loose = {body.box_W.center(), 0.5 * body.box_W.size().norm(), body.allowed_m};
   }
   return bodies;

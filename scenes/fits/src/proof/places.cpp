@@ -47,6 +47,7 @@ struct Moving {
 /// The outcome of moving some bodies.
 struct Tried {
   Moving moving;
+  bool has_limits = true;  ///< false for a proof, whose forces must be in balance without those of FitLimit
   bool is_free = false;
   double left_m = 0;  ///< deepest remaining overlap beyond the allowed depth
   std::vector<SixNumbers> motion;
@@ -63,11 +64,8 @@ class PlaceSearch {
         bodies_(looseBodies(parts, checked)),
         body_of_(bodyOfPart(bodies_, parts.size())),
         clashes_(parts, checked, bodies_),
-        motion_(bodies_.size(), SixNumbers::Zero()),
-        by_sight_(bodies_) {
+        motion_(bodies_.size(), SixNumbers::Zero()) {
     for (const PlacedSurface& part : parts) X_WP_.push_back(part.X_WP);
-    for (MovableBody& body : by_sight_)
-      if (!body.is_fixed) body.allowed_m = body.loose.most_m = kSightTolerance_m;
   }
 
   [[nodiscard]] CheckedPlaces search(const Progress& progress) {
@@ -163,9 +161,12 @@ class PlaceSearch {
       allowed_m = std::max(allowed_m, bodies_[body].allowed_m);
       for (const std::size_t part : bodies_[body].parts) names.push_back(parts_[part].name);
     }
+    const bool has_fits =
+        std::ranges::any_of(group, [&](std::size_t body) { return !bodies_[body].limits.empty(); });
     std::string why = "no places without overlap were found for " + listed(names, kMostNamed) + " within " +
                       lengthInWords(allowed_m) + " of where " + (names.size() == 1 ? "it is" : "they are") +
-                      " drawn, and nothing proves that there are none";
+                      " drawn" + (has_fits ? " and within the play of the fits" : "") +
+                      ", and nothing proves that there are none";
     if (most_moved == 0) return why + "; too many parts overlap each other to be moved at once";
     why +=
         "; up to " + std::to_string(most_moved) + (most_moved == 1 ? " part was moved" : " parts were moved");
@@ -227,7 +228,7 @@ class PlaceSearch {
     // balance.
     for (const double e : {1.0, 0.1, 0.01, 0.001}) {
       Tried tried = startOf(bodies);
-      for (LooseBody& body : tried.moving.loose) body.most_m = kSightTolerance_m;
+      tried.has_limits = false;
       tried.pressed = touches;
       if (const double least_m = provenAfter(tried, e); least_m > 0) return provenWords(tried, least_m);
     }
@@ -242,7 +243,7 @@ class PlaceSearch {
     PoseSet set;
     double turn_rad = 0;
     for (const std::size_t part : {pair.a, pair.b}) {
-      const MovableBody& body = by_sight_[body_of_[part]];
+      const MovableBody& body = bodies_[body_of_[part]];
       if (body.is_fixed) continue;
       if (body.parts.size() > 1) return {};
       set.most_m += kSightTolerance_m;
@@ -278,7 +279,7 @@ class PlaceSearch {
     double deepest_m = 0;
     for (const PressedTouch& pressed : tried.pressed) deepest_m = std::max(deepest_m, pressed.weight);
     const std::vector<double> greatest_m =
-        greatestGaps_m(parts_, tried.X_WP, tried.pressed, by_sight_, moved_m());
+        greatestGaps_m(parts_, tried.X_WP, tried.pressed, bodies_, moved_m());
     std::vector<PressedTouch> kept;
     for (std::size_t i = 0; i < greatest_m.size(); ++i) {
       const Touch& touch = tried.pressed[i].touch;
@@ -293,7 +294,7 @@ class PlaceSearch {
       }
       solve(tried, e);
     }
-    return provenOverlap_m(parts_, tried.X_WP, tried.pressed, by_sight_, moved_m());
+    return provenOverlap_m(parts_, tried.X_WP, tried.pressed, bodies_, moved_m());
   }
 
   [[nodiscard]] std::string provenWords(const Tried& tried, double least_m) const {
@@ -336,9 +337,12 @@ class PlaceSearch {
       rows.push_back({moving.variable[body_of_[touch.of]], moving.variable[body_of_[touch.above]],
                       X_WO * touch.p_O, X_WA.R * touch.n_A, touch.gap_m(X_WO, X_WA) + pressed.allowed_m});
     }
+    if (tried.has_limits)
+      for (std::size_t i = 0; i < moving.bodies.size(); ++i)
+        bodies_[moving.bodies[i]].appendLimits(i, tried.motion[moving.bodies[i]], rows);
     std::vector<double> closed_m;
     moving.x = leastMotion(rows, moving.loose, moving.x, e, closed_m);
-    for (std::size_t k = 0; k < rows.size(); ++k) tried.pressed[k].weight = closed_m[k];
+    for (std::size_t k = 0; k < tried.pressed.size(); ++k) tried.pressed[k].weight = closed_m[k];
     for (std::size_t i = 0; i < moving.bodies.size(); ++i) {
       const std::size_t body = moving.bodies[i];
       tried.motion[body] = moving.x.segment<6>(6 * Eigen::Index(i));
@@ -348,9 +352,8 @@ class PlaceSearch {
   }
 
   [[nodiscard]] bool isWithinTolerances(const Tried& tried) const {
-    return std::ranges::all_of(tried.moving.bodies, [&](std::size_t body) {
-      return bodies_[body].mostMoved_m(tried.motion[body]) <= bodies_[body].allowed_m;
-    });
+    return std::ranges::all_of(tried.moving.bodies,
+                               [&](std::size_t body) { return bodies_[body].allows(tried.motion[body]); });
   }
 
   /// Moves the bodies until no pair that contains one of them overlaps, or until no progress is made.
@@ -456,10 +459,9 @@ class PlaceSearch {
   std::vector<MovableBody> bodies_;
   std::vector<std::size_t> body_of_;
   ClashGroups clashes_;
-  std::vector<SixNumbers> motion_;     // by body: motions of the groups that are free so far
-  std::vector<Pose> X_WP_;             // by part: poses after the motions in motion_
-  std::vector<MovableBody> by_sight_;  // the bodies, each allowed to move by kSightTolerance_m; for proofs
-  std::size_t work_ = 0;               // work done for the current group
+  std::vector<SixNumbers> motion_;  // by body: motions of the groups that are free so far
+  std::vector<Pose> X_WP_;          // by part: poses after the motions in motion_
+  std::size_t work_ = 0;            // work done for the current group
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "fits/fits.h"
 #include "judge/body_motion.h"
 #include "scene/steps.h"
+#include "step/place_in_play.h"
 #include "step/screw_motion.h"
 #include "step/way_check.h"
 #include "text/words.h"
@@ -87,6 +88,10 @@ double leanTolerance_m(AssemblyWorld& world) {
   return leanInFits_m(world.scene(), static_cast<std::size_t>(world.state().step)) + kContactOnBothSides_m;
 }
 
+bool hasGivenTolerance(const SceneStep& step) {
+  return step.tolerance_m > 0 || step.clearance_m > 0;
+}
+
 /// Widens tolerance_m of a part that nothing stops along its path: the tolerance of its fit then applies only
 /// across the path. In a short fit the part may also lean as far as the fit allows, since no stop holds it
 /// upright.
@@ -97,13 +102,29 @@ void widenTolerance(AssemblyWorld& world, const SceneStep& step, const Pose& X_W
   const double along_m = placedAlong_m(world, step, X_WP, result.penetration_limit_m);
   const Vec3 along_W = along_m * insertionAxis(step, world.state().moving.X_PG);
   const double across_m = along_m != 0 ? errorAt(Pose(X_WP.R, X_WP.p - along_W)) : 0;
-  const bool is_given = step.tolerance_m > 0 || step.clearance_m > 0;
+  const bool is_given = hasGivenTolerance(step);
   const bool is_open =
       along_m != 0 && (across_m <= result.tolerance_m || (!is_given && across_m <= leanTolerance_m(world)));
   if (is_open) result.tolerance_m = kSightTolerance_m;
   if (!is_open && !is_given && result.stands_on.empty())
     result.tolerance_m = toleranceOnMates_m(
         world, result, [&](const Vec3& by_m) { return errorAt(Pose(X_WP.R, X_WP.p - by_m)); });
+}
+
+/// Widens tolerance_m to the part's error if its play allows the error (see PlaceInPlay); otherwise returns,
+/// in words, how far the part is off along each axis, and what its play there is. A tolerance that the step
+/// states holds as it is, and a screw or a part that is taken off has no play at its target.
+std::string widenByPlay(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result) {
+  if (hasGivenTolerance(step) || step.motion == StepMotion::Screw || step.takes_off) return {};
+  // Farther off, no play is the reason.
+  constexpr double kMostOff_m = 10e-3;
+  if (result.final_error_m > kMostOff_m) return {};
+  const PlaceInPlay place =
+      placeInPlay(world.placed().judge(), world.placed().judgedBody(step.part), step.X_WP_target,
+                  insertionAxis(step, world.state().moving.X_PG), X_WP, result.penetration_limit_m);
+  if (!place.isPlaced(result.tolerance_m)) return inWords(place);
+  result.tolerance_m = result.final_error_m;
+  return {};
 }
 
 }  // namespace
@@ -127,6 +148,8 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
   result.final_error_m = errorAt(X_WP);
   if (result.final_error_m > result.tolerance_m && result.tolerance_m < kSightTolerance_m)
     widenTolerance(world, step, X_WP, errorAt, result);
+  const std::string off =
+      result.final_error_m > result.tolerance_m ? widenByPlay(world, step, X_WP, result) : std::string();
   result.final_error_rad = rotationVector(X_judged.R * step.X_WP_target.R.transpose()).norm();
   const bool is_turned = step.tolerance_rad > 0 && result.final_error_rad > step.tolerance_rad;
   const bool is_done = world.driver().phase() == device::OperatorPhase::Done;
@@ -142,6 +165,7 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
     if (!fault.empty()) reason = "the part is at its height, but " + fault;
   } else {
     reason = failureReason(world, step, result, is_done, errorAt(brought.X_WP));
+    if (is_done && !off.empty()) reason.append("; at its end the part was ").append(off);
     if (is_done && is_turned && is_within)
       reason.append("; the part is turned by ")
           .append(degreesInWords(result.final_error_rad))

@@ -13,6 +13,7 @@
 #include "haptics/clutching.h"
 #include "judge/body_motion.h"
 #include "scene/steps.h"
+#include "step/place_in_play.h"
 #include "step/screw_motion.h"
 #include "step/way_check.h"
 #include "vps_scenes/run/contact_episodes.h"
@@ -183,12 +184,17 @@ std::optional<Brought> work(AssemblyWorld& world, RunTrace& trace, const SceneSt
   return brought;
 }
 
+/// Poses of a released part in the second half of its rest.
+struct LateMotion {
+  Pose X_WP_from, X_WP_to;  ///< at the start, and farthest from there
+};
+
 /// Watches the released part for scene.release_s, and at least until the empty hand has returned to the start
 /// of the next part's path.
-void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
+LateMotion rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
   const Box& box_P = world.state().moving.box_P;
   const Pose X_WP_released = world.movingPose();
-  Pose X_WP_middle = X_WP_released;
+  LateMotion late{X_WP_released, X_WP_released};
   world.driver().goBack(static_cast<std::size_t>(world.state().step) + 1);
   world.driver().resume();
   const double first_dt_s = world.dt_s();
@@ -199,9 +205,23 @@ void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
     trace.add(world, TracePhase::Rest, result);
     const Pose& X_WP = world.movingPose();
     result.rest_drift_m = std::max(result.rest_drift_m, greatestDisplacement(box_P, X_WP_released, X_WP));
-    if (left > steps / 2) X_WP_middle = X_WP;
-    result.late_drift_m = std::max(result.late_drift_m, greatestDisplacement(box_P, X_WP_middle, X_WP));
+    if (left > steps / 2) late.X_WP_from = late.X_WP_to = X_WP;
+    const double drift_m = greatestDisplacement(box_P, late.X_WP_from, X_WP);
+    if (drift_m <= result.late_drift_m) continue;
+    result.late_drift_m = drift_m;
+    late.X_WP_to = X_WP;
   }
+  return late;
+}
+
+/// Whether a part that is not at rest moves only as its play lets it, as a ball does that rolls about in its
+/// hole. The hand must have let go of the part.
+bool movesInPlay(AssemblyWorld& world, const SceneStep& step, const LateMotion& late,
+                 const StepResult& result) {
+  if (isAtRest(result) || step.takes_off || step.motion == StepMotion::Screw) return false;
+  return movedWithinPlay(world.placed().judge(), world.placed().judgedBody(step.part), step.X_WP_target,
+                         insertionAxis(step, world.state().moving.X_PG), late.X_WP_from, late.X_WP_to,
+                         result.penetration_limit_m);
 }
 
 std::vector<StrategyUse> strategiesOf(std::span<const TraceRow> rows) {
@@ -247,7 +267,8 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
 
   world.release(isHeldAfter(step, result));
   trace.logEvent(world, device::RunEventKind::LetGo, "lets go of '" + result.part + "'");
-  rest(world, trace, result);
+  const LateMotion late = rest(world, trace, result);
+  result.moves_in_play = movesInPlay(world, step, late, result);
   world.reportProgress(0.9);
   // A part with which the hand gave up may fall far when it is released, which is no evidence about the fit.
   const Pose X_WP_end = brought && brought->is_given_up ? brought->X_WP : world.movingPose();

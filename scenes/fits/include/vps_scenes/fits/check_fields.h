@@ -216,9 +216,9 @@ inline constexpr auto kMovedPartFields = std::make_tuple(
     field("by_m", &MovedPart::by_W, "displacement of the middle of the part's box, in the world"),
     field("turn_rad", &MovedPart::turn_W, "rotation vector about the middle of the part's box"),
     field("most_m", &MovedPart::most_m, "greatest displacement of a corner of the part's box"),
-    field("allowed_m", &MovedPart::allowed_m,
-          "limit of `most_m`: tolerance of the part's tightest fit, or 0.5 mm (placement by eye) without a "
-          "fit"),
+    field(
+        "allowed_m", &MovedPart::allowed_m,
+        "limit of `most_m`: 0.5 mm (placement by eye); across its fits, a part may move by their tolerance"),
     field(
         "position_m",
         [](const MovedPart& part) {

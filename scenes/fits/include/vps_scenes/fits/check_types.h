@@ -289,7 +289,8 @@ struct MovedPart {
   Vec3 by_W = Vec3::Zero();    ///< displacement of the middle of the part's box [m]
   Vec3 turn_W = Vec3::Zero();  ///< rotation vector about the middle of the box [rad]
   double most_m = 0;           ///< greatest displacement of a corner of the part's box
-  /// Limit of most_m: tolerance of the part's tightest fit, or kSightTolerance_m without a fit.
+  /// Limit of most_m: placement by eye (0.5 mm). In a fit, the part may move less far: across the axis of a
+  /// shaft, or across the faces of a key, by the tolerance of that fit.
   double allowed_m = 0;
   Pose X_WP;  ///< pose after the motion
 };
@@ -303,8 +304,8 @@ struct CheckedGroup {
 
 /// Whether the parts can be assembled. The question differs from whether the parts overlap as drawn: a part
 /// that is drawn 50 um inside its neighbour is free if its play lets it move away by 50 um. The search looks
-/// for places at which no parts overlap and no part is farther from its drawn place than its tolerance
-/// (fits/fits.h).
+/// for places at which no parts overlap and no part is farther from its drawn place than its tolerance: 0.5
+/// mm, and in each fit the tolerance that the fit gives (fits/fits.h), in the directions which it guides.
 struct CheckedPlaces {
   /// Fits: no parts overlap as drawn, or no parts overlap, by exact measure, after the parts of `moved` are
   /// moved. Blocked: it is proven that no places without overlap exist within 0.5 mm of the drawn places,

@@ -89,6 +89,8 @@ struct StepResult {
   double final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
   double late_drift_m = 0;  ///< rest_drift_m from half of rest_s on, relative to the pose at that time
+  /// The part was not at rest, but it moved only as its play lets it, as a ball that rolls in its hole.
+  bool moves_in_play = false;
   double rest_s = 0;
   double cook_wall_s = 0;  ///< time to build the fixed field of the next step, on its own thread
   double swap_wall_s = 0;  ///< time to put the next fixed field in place, between two physics steps
@@ -120,6 +122,7 @@ inline Evidence evidenceOf(const StepResult& step, double hand_N) {
           .deepest_against = step.deepest_against,
           .rest_drift_m = step.rest_drift_m,
           .late_drift_m = step.late_drift_m,
+          .moves_in_play = step.moves_in_play,
           .press_needed_N = step.press_needed_N,
           .hand_N = hand_N,
           .is_taken_off = step.is_taken_off,

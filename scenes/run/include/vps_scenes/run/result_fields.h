@@ -115,7 +115,9 @@ inline constexpr auto kStepFields = std::make_tuple(
           "greatest displacement of any point of the part in `rest_s` after release"),
     field("late_drift_m", &StepResult::late_drift_m,
           "greatest displacement of any point of the part in the second half of `rest_s`; more than 5 um: "
-          "the part is not at rest"),
+          "the part is not at rest, unless it `moves_in_play`"),
+    field("moves_in_play", &StepResult::moves_in_play,
+          "the part was not at rest, but moved only as its play lets it, as a ball that rolls in its hole"),
     field("rest_s", &StepResult::rest_s, "simulated time that the part was watched after release"));
 
 inline constexpr auto kStrategyFields = std::make_tuple(

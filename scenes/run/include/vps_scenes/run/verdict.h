@@ -51,12 +51,13 @@ struct Evidence {
   std::string deepest_against{};          ///< the other part at the deepest penetration
   double rest_drift_m = 0;  ///< greatest displacement after release; see StepResult for both drifts
   double late_drift_m = 0;
+  bool moves_in_play = false;             ///< the late drift is a motion within the part's play
   double press_needed_N = 0, hand_N = 0;  ///< force of the press fit, and the greatest force of the hand
   bool is_taken_off = false;              ///< the step takes the part off
   std::string doubt{};  ///< why meshes and neighbours cannot show that the part fits; empty: no doubt
 
   [[nodiscard]] bool isWithinLimit() const { return depth_m <= depth_limit_m; }
-  [[nodiscard]] bool isAtRest() const { return late_drift_m <= kRestDriftLimit_m; }
+  [[nodiscard]] bool isAtRest() const { return moves_in_play || late_drift_m <= kRestDriftLimit_m; }
 };
 
 struct Judgement {
