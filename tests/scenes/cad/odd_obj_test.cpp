@@ -262,7 +262,7 @@ TEST_F(OddStl, FilesAreReadAsTheyAreMeant) {
 }
 
 struct PlyForm {
-  std::string coordinate = "float", more_of_vertex, count = "uchar", index = "int";
+  std::string coordinate = "float", more_of_vertex = {}, count = "uchar", index = "int";
   bool is_big = false;
 };
 std::string plyText(const Mesh& mesh, const PlyForm& form, bool is_ascii,
