@@ -189,7 +189,7 @@ const std::vector<Oddity>& oddities() {
          f.plate = "name=\"W&#228;lz &#x3C;&#38;&#x1F600;&#10;\"";
          f.block = "name='&#26495;'";
        },
-       "W\xc3\xa4lz <&\xf0\x9f\x98\x80 ", "\xe6\x9d\xbf"},
+       "W\xc3\xa4lz <&\xf0\x9f\x98\x80", "\xe6\x9d\xbf"},
       {"beams that are needed, and no beams",
        [](File3mf& f) {
          f.attributes = R"( xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02")"

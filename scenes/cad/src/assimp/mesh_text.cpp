@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <fstream>
 #include <iterator>
@@ -76,6 +77,44 @@ void appendWithZeros(std::string_view line, std::string& out) {
 std::string_view keywordOf(std::string_view line) {
   const std::string_view text = trimmed(line);
   return text.substr(0, text.find_first_of(kBlank));
+}
+
+/// Whether a line with this keyword has numbers alone, so that a '#' in it begins a comment.
+bool hasNumbersAlone(std::string_view keyword) {
+  constexpr std::array<std::string_view, 6> kNumbers = {"v", "vn", "vt", "f", "l", "p"};
+  return std::ranges::find(kNumbers, keyword) != kNumbers.end();
+}
+
+/// The text of an OBJ file without comments behind numbers, which assimp 5.2.5 takes for more numbers.
+std::string withoutCommentsBehindNumbers(std::string bytes) {
+  for (std::size_t at = bytes.find('#'); at != std::string::npos; at = bytes.find('#', at)) {
+    const std::size_t before = bytes.find_last_of("\r\n", at),
+                      from = before == std::string::npos ? 0 : before + 1;
+    const std::size_t end = std::min(bytes.find_first_of("\r\n", at), bytes.size());
+    if (hasNumbersAlone(keywordOf(std::string_view(bytes).substr(from, at - from))))
+      std::fill(bytes.begin() + std::ptrdiff_t(at), bytes.begin() + std::ptrdiff_t(end), ' ');
+    at = end;
+  }
+  return bytes;
+}
+
+/// The text of an STL file with its keywords in small letters, as assimp 5.2.5 needs them, and without blanks
+/// before the first one. Names of solids keep their letters.
+std::string withSmallKeywords(std::string bytes) {
+  bytes.erase(0, std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
+  if (bytes.starts_with("solid") && bytes.find("facet") != std::string::npos) return bytes;
+  std::size_t at = 0;
+  while (at < bytes.size()) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+    const std::string_view keyword = keywordOf(std::string_view(bytes).substr(at, end - at));
+    const bool is_named = keyword == "SOLID" || keyword == "solid" || keyword == "Solid" ||
+                          keyword == "ENDSOLID" || keyword == "endsolid" || keyword == "EndSolid";
+    const std::size_t last = is_named ? std::size_t(keyword.data() - bytes.data()) + keyword.size() : end;
+    std::transform(bytes.begin() + std::ptrdiff_t(at), bytes.begin() + std::ptrdiff_t(last),
+                   bytes.begin() + std::ptrdiff_t(at), [](unsigned char c) { return char(std::tolower(c)); });
+    at = end + 1;
+  }
+  return bytes;
 }
 
 /// Whether assimp 5.2.5 would misread the line as a face, line or point because of its first letter, as with
@@ -163,49 +202,63 @@ MeshText objText(const std::string& file) {
   std::size_t group_word = 0;
   bool is_continued = false,
        is_dropped = false;  // the line before ends in '\\'; the line before was left out
-  return rewritten(bytesOf(file), "v", [&](std::string_view line, MeshText& out) {
-    const std::string_view text = line.substr(0, line.find('\n'));
-    if (std::exchange(is_continued, trimmed(text).ends_with('\\'))) {
-      if (!is_dropped) out.bytes += line;  // a blank that begins the line separates two numbers
-      return;
-    }
-    const std::string_view keyword = keywordOf(text);
-    out.surface_count += keyword == "surf" ? 1 : 0;
-    is_dropped = isTakenForElement(keyword);
-    if (is_dropped) return;
-    const auto object = afterKeyword(text, "o"), faces = afterKeyword(text, "g");
-    const bool is_one_line = text.find('\r') >= text.size() - 1;  // otherwise lines end in '\r' alone
-    if ((!object && !faces) || !is_one_line) {
-      // assimp skips a line that begins with a blank.
-      const std::string_view rest = line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
-      if (rest.starts_with('v')) return appendWithZeros(rest, out.bytes);
-      out.bytes += rest;
-      return;
-    }
-    const std::string name(trimmed(object ? *object : *faces));
-    const bool is_known = faces && name == group && !out.names.empty() && group_word < out.names.size() &&
-                          out.names[group_word] == name;
-    const std::size_t word = is_known ? group_word : out.names.size();
-    if (!is_known) out.names.push_back(name);
-    if (faces) {
-      group = name;
-      group_word = word;
-    }
-    out.bytes += std::string(object ? "o " : "g ").append(kWord) + std::to_string(word) + "\n";
-  });
+  return rewritten(
+      withoutCommentsBehindNumbers(bytesOf(file)), "v", [&](std::string_view line, MeshText& out) {
+        const std::string_view text = line.substr(0, line.find('\n'));
+        if (std::exchange(is_continued, trimmed(text).ends_with('\\'))) {
+          if (!is_dropped) out.bytes += line;  // a blank that begins the line separates two numbers
+          return;
+        }
+        const std::string_view keyword = keywordOf(text);
+        out.surface_count += keyword == "surf" ? 1 : 0;
+        is_dropped = isTakenForElement(keyword);
+        if (is_dropped) return;
+        const auto object = afterKeyword(text, "o"), faces = afterKeyword(text, "g");
+        const bool is_one_line = text.find('\r') >= text.size() - 1;  // otherwise lines end in '\r' alone
+        if ((!object && !faces) || !is_one_line) {
+          // assimp skips a line that begins with a blank.
+          const std::string_view rest = line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
+          if (keyword == "vt" && trimmed(rest.substr(2)).find_first_of(kBlank) == std::string_view::npos &&
+              is_one_line) {
+            out.bytes.append(trimmed(text))
+                .append(" 0\n");  // assimp needs two numbers; OBJ asks for one to three
+            return;
+          }
+          if (rest.starts_with('v')) return appendWithZeros(rest, out.bytes);
+          out.bytes += rest;
+          return;
+        }
+        const std::string name(trimmed(object ? *object : *faces));
+        const bool is_known = faces && name == group && !out.names.empty() && group_word < out.names.size() &&
+                              out.names[group_word] == name;
+        const std::size_t word = is_known ? group_word : out.names.size();
+        if (!is_known) out.names.push_back(name);
+        if (faces) {
+          group = name;
+          group_word = word;
+        }
+        out.bytes += std::string(object ? "o " : "g ").append(kWord) + std::to_string(word) + "\n";
+      });
 }
 
 std::optional<MeshText> stlText(const std::string& file) {
   constexpr std::string_view kSolid = "solid";
-  std::array<char, kByteOrderMark.size() + kSolid.size()> first{};
+  std::array<char, 256> first{};
   std::ifstream in(file, std::ios::binary);
-  if (!in.read(first.data(), first.size()) ||
-      !withoutByteOrderMark({first.data(), first.size()}).starts_with(kSolid))
+  in.read(first.data(), first.size());
+  std::string head(withoutByteOrderMark({first.data(), static_cast<std::size_t>(in.gcount())}));
+  head.erase(0, std::min(head.find_first_not_of(" \t\r\n"), head.size()));
+  if (!std::ranges::equal(head.substr(0, kSolid.size()), kSolid, {},
+                          [](unsigned char c) { return std::tolower(c); }))
     return std::nullopt;
   const std::string bytes = bytesOf(file);
   // A binary STL file may begin with the word "solid" as well.
   if (bytes.find('\0') != std::string::npos) return std::nullopt;
-  return rewritten(bytes, "vertex", [](std::string_view line, MeshText& out) { out.bytes += line; });
+  constexpr std::size_t kLongestName = 500;  // assimp 5.2.5 refuses names of 1024 bytes
+  return rewritten(withSmallKeywords(bytes), "vertex", [](std::string_view line, MeshText& out) {
+    out.bytes += line.substr(0, kLongestName);
+    if (line.size() > kLongestName) out.bytes += '\n';
+  });
 }
 
 std::vector<std::string> requiredExtensions(std::string_view json) {
@@ -231,6 +284,31 @@ std::vector<std::string> requiredExtensions(std::string_view json) {
     }
   }
   return names;
+}
+
+void hideOtherExtras(std::string& json, std::size_t from) {
+  constexpr std::string_view kKey = "\"extras\"";
+  for (std::size_t at = json.find(kKey, from); at != std::string::npos; at = json.find(kKey, at + 1)) {
+    const std::size_t colon = json.find_first_not_of(" \t\r\n", at + kKey.size());
+    if (colon == std::string::npos || json[colon] != ':') continue;
+    const std::size_t value = json.find_first_not_of(" \t\r\n", colon + 1);
+    if (value != std::string::npos && json[value] != '{') json[at + 1] = '_';
+  }
+}
+
+std::string percentDecoded(std::string_view text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    unsigned char byte = 0;
+    const char *const from = text.data() + at + 1, *const end = text.data() + std::min(at + 3, text.size());
+    if (text[at] == '%' && end - from == 2 && std::from_chars(from, end, byte, 16).ptr == end) {
+      out += static_cast<char>(byte);
+      at += 2;
+    } else {
+      out += text[at];
+    }
+  }
+  return out;
 }
 
 std::string unreadExtension(const std::vector<std::string>& names) {

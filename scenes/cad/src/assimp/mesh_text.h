@@ -39,4 +39,11 @@ std::vector<std::string> requiredExtensions(std::string_view json);
 /// textures, lights and metadata do not change geometry, and assimp reads or refuses compression by Draco.
 std::string unreadExtension(const std::vector<std::string>& names);
 
+/// Renames each "extras" from `from` on whose value is no object: glTF allows any value, and assimp 5.2.5
+/// refuses the file. The text keeps its length.
+void hideOtherExtras(std::string& json, std::size_t from);
+
+/// The text in which each "%20" is the byte of this hexadecimal number, as in names of files in glTF.
+std::string percentDecoded(std::string_view text);
+
 }  // namespace vps::scenes::import

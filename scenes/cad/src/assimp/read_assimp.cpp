@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -81,18 +82,29 @@ std::array<float, 3> colorOf(const aiScene& scene, const aiMesh& mesh, bool is_g
   return ImportedPart().color;
 }
 
-/// Gives assimp other bytes in place of one file; files that this file names are read from disk.
+/// Gives assimp other bytes in place of one file, if there are any; files that this file names are read from
+/// disk, where their names may be written with "%20" for a blank.
 class ReplacedFile : public Assimp::DefaultIOSystem {
  public:
-  ReplacedFile(std::string file, const std::string& bytes) : file_(std::move(file)), bytes_(bytes) {}
+  ReplacedFile(std::string file, const std::string* bytes) : file_(std::move(file)), bytes_(bytes) {}
+  bool Exists(const char* name) const override {
+    return (bytes_ != nullptr && name == file_) || DefaultIOSystem::Exists(name);
+  }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
-    if (name != file_) return DefaultIOSystem::Open(name, mode);
-    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size());
+    if (bytes_ != nullptr && name == file_)
+      return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_->data()),
+                                        bytes_->size());
+    if (Assimp::IOStream* const stream = DefaultIOSystem::Open(name, mode); stream != nullptr) return stream;
+    const std::size_t folder = file_.find_last_of('/') + 1;  // 0 without a folder
+    if (std::string_view(name).substr(0, folder) != std::string_view(file_).substr(0, folder)) return nullptr;
+    const std::string decoded =
+        file_.substr(0, folder) + percentDecoded(std::string_view(name).substr(folder));
+    return decoded == name ? nullptr : DefaultIOSystem::Open(decoded.c_str(), mode);
   }
 
  private:
   std::string file_;
-  const std::string& bytes_;
+  const std::string* bytes_;
 };
 
 /// The name of a node or mesh; empty for assimp's placeholders.
@@ -225,16 +237,52 @@ std::string gltfJson(const std::string& file) {
   return json;
 }
 
-/// The text to read in place of a glTF file with a byte order mark; empty for other files. Throws LoadError
-/// for a file that needs an extension that is not read.
-std::optional<std::string> gltfText(const std::string& file) {
-  std::string json = gltfJson(file);
+/// A glTF file as assimp reads it.
+struct GltfInput {
+  std::string name;                  ///< with the extension that fits the content
+  std::optional<std::string> bytes;  ///< in place of those of the file; empty: the file is read as it is
+};
+
+/// Throws LoadError for a file that needs an extension that is not read.
+GltfInput gltfInput(const std::string& file) {
+  const std::string json = gltfJson(file);
   if (const std::string name = unreadExtension(requiredExtensions(json)); !name.empty())
     throw LoadError(
         file, "",
         "needs the extension '" + name + "' of glTF, which is not read; export it without this extension");
-  if (!json.starts_with(kByteOrderMark)) return std::nullopt;
-  return json.erase(0, kByteOrderMark.size());
+  std::ifstream in(file, std::ios::binary);
+  std::array<char, 4> first{};
+  in.read(first.data(), first.size());
+  const bool is_binary = std::string_view(first.data(), first.size()) == "glTF";
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string right = is_binary ? ".glb" : ".gltf";
+  GltfInput out{extension == right ? file : file + right, {}};
+  std::string shown = json;
+  hideOtherExtras(shown, 0);
+  if (extension == right && shown == json && !json.starts_with(kByteOrderMark)) return out;
+  if (!is_binary) {
+    if (shown.starts_with(kByteOrderMark)) shown.erase(0, kByteOrderMark.size());
+    out.bytes = std::move(shown);
+    return out;
+  }
+  in.seekg(0);
+  constexpr std::size_t kHeader = 20;
+  out.bytes.emplace(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  if (out.bytes->size() >= kHeader + shown.size()) out.bytes->replace(kHeader, shown.size(), shown);
+  return out;
+}
+
+/// A remark on meshes with morph targets or skins, which are read in their shape at rest; empty without.
+std::string deformations(const aiScene& scene) {
+  std::size_t count = 0;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+    count += scene.mMeshes[i]->mNumAnimMeshes > 0 || scene.mMeshes[i]->mNumBones > 0 ? 1 : 0;
+  if (count == 0) return "";
+  return "has " + std::to_string(count) +
+         (count == 1 ? " mesh with a deformation (morph targets or a skin) that is"
+                     : " meshes with deformations (morph targets or skins) that are") +
+         " not applied: the shape at rest is read";
 }
 
 /// Rotates the parts back to the axes of the file, since the user states which axis is up.
@@ -270,7 +318,12 @@ RawCad readAssimp(const std::string& file, const FileFormat& format, const Impor
   RawCad cad;
   cad.states_unit = is_gltf;  // glTF is in metres by its specification
   std::optional<std::string> replaced;
-  if (is_gltf) replaced = gltfText(file);
+  std::string read_name = file;
+  if (is_gltf) {
+    GltfInput input = gltfInput(file);
+    read_name = std::move(input.name);
+    replaced = std::move(input.bytes);
+  }
   if (is_collada)
     replaced = colladaText(file, settings, cad);
   else if (!cad.states_unit)
@@ -284,10 +337,11 @@ RawCad readAssimp(const std::string& file, const FileFormat& format, const Impor
     if (format.id == CadFormat::Ply) ply = plyItReadsRight(file);
     if (format.id == CadFormat::Obj) text = objText(file);
     if (format.id == CadFormat::Stl) text = stlText(file);
-    if (text || replaced)  // the importer deletes the handler
-      importer.SetIOHandler(new ReplacedFile(file, text ? text->bytes : *replaced));
-    scene =
-        ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), 0, "ply") : importer.ReadFile(file, 0);
+    const std::string* const bytes = text ? &text->bytes : replaced ? &*replaced : nullptr;
+    if (bytes != nullptr || is_gltf)  // the importer deletes the handler
+      importer.SetIOHandler(new ReplacedFile(read_name, bytes));
+    scene = ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), 0, "ply")
+                : importer.ReadFile(read_name, 0);
     for (unsigned i = 0; scene && i < scene->mNumMeshes; ++i) {
       if (!hasAllVertices(*scene->mMeshes[i]))
         throw LoadError(file, scene->mMeshes[i]->mName.C_Str(),
@@ -308,6 +362,7 @@ RawCad readAssimp(const std::string& file, const FileFormat& format, const Impor
     for (char& c : reason) c = c == '\n' ? ' ' : c;
     throw LoadError(file, "", "is not a readable " + format.name + " file (" + reason + "); export it again");
   }
+  if (const std::string remark = deformations(*scene); !remark.empty()) cad.warnings.push_back(remark);
   Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
   if (is_gltf || is_collada) makeZUp(cad, is_gltf);
   if (is_gltf && settings.up) keepFileAxes(cad);

@@ -44,7 +44,10 @@ std::optional<RawCad> readBinaryStl(const std::string& file, const ImportSetting
   in.seekg(0);
   if (!in.read(bytes.data(), size)) return std::nullopt;
   const std::size_t count = valueAt<std::uint32_t>(&bytes[80]);
-  if (bytes.size() != kHeader + count * kTriangle || hasColor(bytes)) return std::nullopt;
+  // Some programs append bytes. The number of a text file is made of letters, and is too great.
+  if (bytes.size() < kHeader + count * kTriangle) return std::nullopt;
+  bytes.resize(kHeader + count * kTriangle);
+  if (hasColor(bytes)) return std::nullopt;
   RawCad cad;
   cad.unit_m = unitOf(file, CadFormat::Stl, settings);
   Mesh& mesh = cad.parts.emplace_back().mesh;

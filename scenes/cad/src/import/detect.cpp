@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 
 #include "import/readers.h"
 #include "vps/errors.h"
@@ -66,27 +67,46 @@ FileFormat formatOf(const std::string& head, const std::string& file) {
   return by_extension;
 }
 
+std::string inSmallLetters(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+/// The end of a file, without blanks, empty lines and zero bytes at its end. Long enough for a signature
+/// after the end of a STEP file, and for thousands of empty lines.
+std::string tailOf(std::ifstream& in, std::uint64_t size) {
+  constexpr std::uint64_t kTail = 1 << 16;
+  std::string tail = bytes(in, size > kTail ? size - kTail : 0, kTail);
+  tail.resize(tail.find_last_not_of(std::string_view(" \r\n\t\0", 5)) + 1);
+  return tail;
+}
+
+/// An STL file is text if it begins with the word "solid" and has no zero byte; a binary file may begin with
+/// that word as well.
+bool isWholeStl(std::ifstream& in, std::uint64_t size, const std::string& head) {
+  const std::uint64_t binary_size =
+      head.size() >= 84 ? 84 + 50 * std::uint64_t(littleEndian(head.substr(80, 4))) : 0;
+  if (binary_size == size) return true;
+  const std::size_t first = std::min(head.find_first_not_of(" \t\r\n"), head.size());
+  if (inSmallLetters(head.substr(first, 5)) != "solid" || head.find('\0') != std::string::npos)
+    return binary_size > 0 && size >= binary_size;
+  const std::string tail = inSmallLetters(tailOf(in, size));
+  const std::size_t end = tail.rfind("endsolid"), facet = tail.rfind("endfacet");
+  return end != std::string::npos && (facet == std::string::npos || facet < end);
+}
+
 /// True if the file ends as a complete file of this format does.
 bool isWhole(CadFormat format, std::ifstream& in, std::uint64_t size, const std::string& head) {
-  const std::uint64_t tail_at = size > 1024 ? size - 1024 : 0;
-  if (format == CadFormat::Step)
-    return bytes(in, tail_at, 1024).find("END-ISO-10303-21") != std::string::npos;
+  if (format == CadFormat::Step) return tailOf(in, size).find("END-ISO-10303-21") != std::string::npos;
   if (format == CadFormat::Iges) {
-    const std::string tail = bytes(in, tail_at, 1024);
-    const std::size_t last = tail.find_last_not_of(" \r\n\t");
-    if (last == std::string::npos) return false;
-    const std::size_t before = tail.find_last_of("\r\n", last);
+    const std::string tail = tailOf(in, size);
+    const std::size_t before = tail.find_last_of("\r\n");
     const std::size_t line = before == std::string::npos ? 0 : before + 1;
-    return last - line >= 72 && tail[line + 72] == 'T';  // the terminate section
+    return tail.size() > line + 72 && tail[line + 72] == 'T';  // the terminate section
   }
   if (format == CadFormat::Gltf && head.starts_with("glTF"))
     return head.size() >= 12 && littleEndian(head.substr(8, 4)) == size;
-  if (format == CadFormat::Stl && head.starts_with("solid") && head.find("facet") != std::string::npos) {
-    return bytes(in, tail_at, 1024).find("endsolid") != std::string::npos;
-  }
-  if (format == CadFormat::Stl)
-    return head.size() >= 84 && size >= 84 + 50 * std::uint64_t(littleEndian(head.substr(80, 4)));
-  return true;
+  return format != CadFormat::Stl || isWholeStl(in, size, head);
 }
 
 }  // namespace

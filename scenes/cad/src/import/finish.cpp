@@ -265,11 +265,20 @@ std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb) {
   return linear;
 }
 
+namespace {
+
+std::string withoutOuterBlanks(const std::string& name) {
+  const std::size_t from = std::min(name.find_first_not_of(' '), name.size());
+  return name.substr(from, name.find_last_not_of(' ') + 1 - from);
+}
+
+}  // namespace
+
 void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback) {
   UniqueNames names;
   for (ImportedPart& part : parts) {
-    part.name = printable(part.name);
-    if (part.name.find_first_not_of(' ') == std::string::npos) part.name = fallback;
+    part.name = withoutOuterBlanks(printable(part.name));
+    if (part.name.empty()) part.name = fallback;
     part.name = names.unique(part.name);
   }
 }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -46,6 +47,25 @@ void forEachFile(const std::string& archive, std::size_t most_bytes,
     unzCloseCurrentFile(zip.get());
     if (!f(std::string_view(name.data()), text)) return;
   } while (unzGoToNextFile(zip.get()) == UNZ_OK);
+}
+
+constexpr std::string_view kRelations = "_rels/.rels";
+
+std::optional<std::string> withoutMissingThumbnails(std::string_view xml,
+                                                    const std::set<std::string>& names) {
+  std::string out;
+  std::size_t copied = 0, at = 0;
+  while (const std::optional<XmlTag> tag = nextTag(xml, at)) {
+    if (tag->name != "Relationship" || !tag->is_end ||
+        !tag->value("Type").value_or("").ends_with("/thumbnail"))
+      continue;
+    std::string_view target = tag->value("Target").value_or("");
+    if (target.starts_with('/')) target.remove_prefix(1);
+    if (names.contains(std::string(target))) continue;
+    out.append(xml.substr(copied, tag->from - copied));
+    copied = tag->end;
+  }
+  return copied == 0 ? std::nullopt : std::optional(out.append(xml.substr(copied)));
 }
 
 bool isModel(std::string_view name) {
@@ -89,14 +109,18 @@ ModelFile modelFile(std::string_view name, const std::optional<XmlTag>& model) {
 
 }  // namespace
 
-std::string withoutNumbersForCharacters(const std::string& archive) {
+std::string readableArchive(const std::string& archive) {
   constexpr std::size_t kMostBytes = 0xF0000000, kMostFiles = 0xFFFF;  // without the 64-bit extension of zip
   StoredArchive copy;
   bool has_any = false, is_small = true;
   std::size_t count = 0;
+  std::set<std::string> names;
+  forEachFile(archive, 0,
+              [&](std::string_view name, const std::string&) { return names.emplace(name), true; });
   forEachFile(archive, kWholeFile, [&](std::string_view name, std::string& text) {
     std::optional<std::string> changed;
     if (isModel(name)) changed = withoutNumbersForCharacters(std::string_view(text));
+    if (name == kRelations) changed = withoutMissingThumbnails(text, names);
     has_any = has_any || changed;
     is_small = ++count < kMostFiles && copy.size() + text.size() < kMostBytes;
     if (is_small) copy.add(name, changed ? *changed : text);
@@ -121,7 +145,7 @@ ModelFiles modelFiles(const std::string& archive) {
   std::vector<ModelFile> found;
   forEachFile(archive, kHead, [&](std::string_view name, const std::string& text) {
     std::size_t at = 0;
-    if (name == "_rels/.rels") {
+    if (name == kRelations) {
       while (const std::optional<XmlTag> tag = nextTag(text, at))
         if (tag->name == "Relationship" && tag->value("Type").value_or("").ends_with("/3dmodel"))
           root = tag->value("Target").value_or("");

@@ -9,9 +9,10 @@
 
 namespace vps::scenes::import {
 
-/// A copy of the archive, uncompressed, in which the model files have characters in place of their numbers
-/// ("&#228;"), which lib3mf 1.8.1 refuses. Empty if no model file has such a number, or beyond 4 GB.
-std::string withoutNumbersForCharacters(const std::string& archive);
+/// A copy of the archive, uncompressed, without two things for which lib3mf 1.8.1 refuses it: the model files
+/// have characters in place of their numbers ("&#228;"), and thumbnails that are not in the archive are not
+/// named. Empty if there is nothing of these, or beyond 4 GB.
+std::string readableArchive(const std::string& archive);
 
 /// The first fault in a model file that lib3mf 1.8.1 does not report, in words; empty if there is none:
 /// - a coordinate of a vertex with text after the number, as "4,5" and "4mm", which lib3mf reads as 4;

@@ -92,8 +92,7 @@ class Reader {
     std::string words;
     Object reader = readModel("", words);
     if (!reader)
-      if (const std::string bytes = withoutNumbersForCharacters(file_); !bytes.empty())
-        reader = readModel(bytes, words);
+      if (const std::string bytes = readableArchive(file_); !bytes.empty()) reader = readModel(bytes, words);
     if (!reader) throw LoadError(file_, "", "is not a readable 3MF file (" + words + "); export it again");
     addRemarks(reader);
     readUnit();

@@ -31,6 +31,7 @@
 #include <StepShape_RevolvedAreaSolid.hxx>
 #include <StepShape_RevolvedFaceSolid.hxx>
 #include <StepShape_ShapeDefinitionRepresentation.hxx>
+#include <StepVisual_ColourRgb.hxx>
 #include <StepVisual_PreDefinedColour.hxx>
 #include <StepVisual_PreDefinedItem.hxx>
 #include <TCollection_HAsciiString.hxx>
@@ -268,11 +269,26 @@ Damage damageOf(const Handle(Interface_InterfaceModel) & model) {
   return Finder(model).find();
 }
 
-void nameColors(const Handle(Interface_InterfaceModel) & model) {
-  for (int i = 1; i <= model->NbEntities(); ++i)
-    if (const auto color = Handle(StepVisual_PreDefinedColour)::DownCast(model->Value(i));
-        !color.IsNull() && !color->GetPreDefinedItem().IsNull() && model->IsErrorEntity(i))
+void mendColors(const Handle(Interface_InterfaceModel) & model) {
+  // Rounding in single precision, and what a dark colour may lack.
+  constexpr double kBeside = 0.01;
+  const auto rounded = [](double share) {
+    if (share < 0) return 0.0;
+    return share > 1 && share < 1 + kBeside ? 1.0 : std::min(share, 255.0);
+  };
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    if (const auto rgb = Handle(StepVisual_ColourRgb)::DownCast(model->Value(i)); !rgb.IsNull()) {
+      rgb->SetRed(rounded(rgb->Red()));
+      rgb->SetGreen(rounded(rgb->Green()));
+      rgb->SetBlue(rounded(rgb->Blue()));
+    }
+    const auto color = Handle(StepVisual_PreDefinedColour)::DownCast(model->Value(i));
+    if (color.IsNull() || color->GetPreDefinedItem().IsNull()) continue;
+    if (model->IsErrorEntity(i))
       color->GetPreDefinedItem()->SetName(new TCollection_HAsciiString(""));
+    else if (!color->GetPreDefinedItem()->Name().IsNull())
+      color->GetPreDefinedItem()->Name()->LowerCase();
+  }
 }
 
 }  // namespace vps::scenes::import

@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "occt/step_text.h"
+
 namespace vps::scenes::import {
 namespace {
 
@@ -18,18 +20,6 @@ struct Number {
   std::size_t from = 0, end = 0;
   std::size_t equals = 0;  ///< position of the '=' after an entity's own number; 0: the number is a reference
 };
-
-std::size_t after(std::string_view text, std::size_t at, std::string_view end) {
-  const std::size_t found = text.find(end, std::min(at, text.size()));
-  return found == std::string_view::npos ? text.size() : found + end.size();
-}
-
-std::size_t afterBlanksAndComments(std::string_view text, std::size_t at) {
-  while ((at = std::min(text.find_first_not_of(" \t\r\n", at), text.size())) < text.size() &&
-         text.substr(at).starts_with("/*"))
-    at = after(text, at + 2, "*/");
-  return at;
-}
 
 /// Calls f(Number) for each "#12" outside of strings and comments. Begins at the first byte, since the header
 /// has strings as well.

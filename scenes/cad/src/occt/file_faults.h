@@ -11,7 +11,7 @@
 
 namespace vps::scenes::import {
 
-// --- The text of a STEP file, before it is read (entity_numbers.cpp)
+// --- The text of a STEP file, before it is read (entity_numbers.cpp, plain_sections.cpp)
 
 /// A STEP file's text with changed entity numbers where Open CASCADE would misread it; empty if no number
 /// needs a change.
@@ -25,6 +25,18 @@ std::optional<std::string> withReadableNumbers(std::string_view text);
 /// Writes the exponents of reals ("1.e-5") with a capital E, which ISO 10303-21 asks for and Open CASCADE
 /// needs. True if an exponent was changed. O(n).
 bool capitalizeExponents(std::string& text);
+
+/// The text with one header and one data section; empty if no change is needed. ISO 10303-21 allows several
+/// data sections, also with parameters, sections of anchors and references, a signature behind the end, and
+/// blanks before a semicolon; Open CASCADE takes these for errors of syntax. A reference to another file
+/// becomes a reference to an entity that is not in the file. O(n).
+std::optional<std::string> withPlainSections(std::string_view text);
+
+// --- The text of an IGES file (iges_lines.cpp)
+
+/// The text without a byte order mark, empty lines at its end, and blanks behind column 80, which Open
+/// CASCADE takes for errors of syntax; empty if no change is needed. O(n).
+std::optional<std::string> withPlainLines(std::string_view text);
 
 // --- Damaged entities (damaged_entities.cpp)
 
@@ -40,8 +52,10 @@ struct Damage {
 /// curve, surface, solid, transformation, or an instance of one of these. O(entities and references).
 Damage damageOf(const Handle(Interface_InterfaceModel) & model);
 
-/// Gives predefined colours without a name, on which Open CASCADE crashes, an empty name.
-void nameColors(const Handle(Interface_InterfaceModel) & model);
+/// Mends colours that Open CASCADE misreads: predefined colours without a name, on which it crashes, get an
+/// empty name, names in capitals get small letters, and shares a little outside of 0 to 1, with which it
+/// takes all shares for numbers up to 255, are rounded to 0 or 1.
+void mendColors(const Handle(Interface_InterfaceModel) & model);
 
 // --- Units of length (length_units.cpp)
 
@@ -51,6 +65,12 @@ struct LengthUnits {
   std::string remark;     ///< on shapes without a unit in a file where other shapes have units; empty: none
   std::string fault;      ///< a unit whose factor is not positive, in words; empty: there is none
 };
+
+/// Makes units of STEP that are based on other converted units, such as feet of 12 inches, units of the SI
+/// unit on which these are based; Open CASCADE takes the first for millimetres without a message. Gives IGES
+/// files whose unit has a name in small letters or in words ("mm", "INCHES") the flag of this unit.
+/// O(entities).
+void mendUnits(const Handle(Interface_InterfaceModel) & model);
 
 /// O(entities).
 LengthUnits lengthUnits(const Handle(Interface_InterfaceModel) & model);

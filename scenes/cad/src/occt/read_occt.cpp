@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reads STEP and IGES with names, tree, poses and colours (Open CASCADE's XDE), and BREP.
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <sstream>
@@ -29,6 +32,7 @@
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_DataMapOfShapeInteger.hxx>
+#include <TopTools_DataMapOfShapeShape.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -169,7 +173,10 @@ class Tree {
                                                       static_cast<double>(product_entries_.size()));
     };
     tell(0);
-    for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product), tell))
+    const auto remember = [this](const TopoDS_Shape& sewn, const TopoDS_Shape& face) {
+      unsewn_.Bind(sewn, face);
+    };
+    for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product), tell, remember))
       all_shapes_.push_back(shape);
     shape_end_[it->first] = all_shapes_.size();
   }
@@ -244,7 +251,7 @@ class Tree {
   /// The colours of single faces of a product.
   class ColoredFaces {
    public:
-    ColoredFaces(const TDF_Label& product, const Tree& tree) {
+    ColoredFaces(const TDF_Label& product, const Tree& tree) : tree_(tree) {
       TDF_LabelSequence labels;
       XCAFDoc_ShapeTool::GetSubShapes(product, labels);
       for (const TDF_Label& label : labels) {
@@ -262,7 +269,7 @@ class Tree {
       for (TopExp_Explorer it(shape, TopAbs_FACE); !colors_.empty() && it.More(); it.Next()) {
         std::optional<Color>& color = out.emplace_back();
         int number = 0;
-        if (!number_of_.Find(it.Current(), number)) continue;
+        if (!number_of_.Find(tree_.unsewn(it.Current()), number)) continue;
         color = colors_[static_cast<std::size_t>(number)];
         has_any = true;
       }
@@ -271,6 +278,7 @@ class Tree {
     }
 
    private:
+    const Tree& tree_;
     std::vector<Color> colors_;
     TopTools_DataMapOfShapeInteger number_of_;
   };
@@ -280,6 +288,12 @@ class Tree {
     for (std::size_t i = 0; i < piece.of_faces.size(); ++i)
       append(colors, piece.tessellation.faces[i].triangles, {}, piece.of_faces[i].value_or(other));
     return colors;
+  }
+
+  /// The face of the file from which a face was made when loose faces were sewn; otherwise the face itself.
+  [[nodiscard]] TopoDS_Shape unsewn(const TopoDS_Shape& face) const {
+    TopoDS_Shape from;
+    return unsewn_.Find(face, from) ? from : face;
   }
 
   static Color linear(const Quantity_Color& c) { return {float(c.Red()), float(c.Green()), float(c.Blue())}; }
@@ -311,7 +325,7 @@ class Tree {
     is_by_faces = true;
     std::map<Color, double> area_of;
     for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-      if (!has(it.Current())) continue;
+      if (!has(unsewn(it.Current()))) continue;
       GProp_GProps face;
       BRepGProp::SurfaceProperties(it.Current(), face);
       area_of[out] += face.Mass();
@@ -329,6 +343,7 @@ class Tree {
   TDF_LabelSequence roots_;
   std::map<std::string, std::vector<Piece>> products_;
   UniqueNames instances_;
+  TopTools_DataMapOfShapeShape unsewn_;
   std::vector<TopoDS_Shape> all_shapes_;
   std::set<std::string> product_entries_;                       // entries of all products, for the progress
   std::map<std::string, std::size_t> first_shape_, shape_end_;  // ranges of products in all_shapes_
@@ -346,13 +361,32 @@ XSControl_Reader& basic(IGESCAFControl_Reader& reader) {
   return reader;
 }
 
+/// Open CASCADE reads IGES from files only, so that a changed text goes into a file that has no name any
+/// more.
+IFSelect_ReturnStatus readIges(XSControl_Reader& reader, const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::optional<std::string> plain = withPlainLines(text);
+  if (!plain) return reader.ReadFile(file.c_str());
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> other(std::tmpfile(), std::fclose);
+  if (!other || std::fwrite(plain->data(), 1, plain->size(), other.get()) != plain->size() ||
+      std::fflush(other.get()) != 0)
+    return IFSelect_RetFail;
+  std::rewind(other.get());
+  return reader.ReadFile(("/dev/fd/" + std::to_string(fileno(other.get()))).c_str());
+}
+
 IFSelect_ReturnStatus readText(XSControl_Reader& reader, const std::string& file, const FileFormat& format) {
-  if (format.id != CadFormat::Step) return reader.ReadFile(file.c_str());
+  if (format.id == CadFormat::Iges) return readIges(reader, file);
   std::ifstream in(file, std::ios::binary);
   std::string text(std::filesystem::file_size(file), '\0');
   in.read(text.data(), std::ssize(text));
   bool is_changed = text.starts_with(kByteOrderMark);
   if (is_changed) text.erase(0, kByteOrderMark.size());
+  if (std::optional<std::string> plain = withPlainSections(text)) {
+    text = std::move(*plain);
+    is_changed = true;
+  }
   is_changed = capitalizeExponents(text) || is_changed;
   if (std::optional<std::string> changed = withReadableNumbers(text))
     text = std::move(*changed);
@@ -400,10 +434,11 @@ void transfer(Reader& reader, const std::string& file, const FileFormat& format,
   if (readText(basic(reader), file, format) != IFSelect_RetDone)
     throw unreadable(file, format, "its syntax is wrong");
   // Open CASCADE 7.6.3 crashes on some entities that were not read, such as a face bound without its loop.
-  nameColors(basic(reader).Model());
+  mendColors(basic(reader).Model());
   const Damage damage = damageOf(basic(reader).Model());
   if (!damage.lost_geometry.empty()) throw unreadable(file, format, damage.lost_geometry);
   if (!damage.remark.empty()) cad.warnings.push_back(damage.remark);
+  mendUnits(basic(reader).Model());
   const LengthUnits units = lengthUnits(basic(reader).Model());
   if (!units.fault.empty()) throw unreadable(file, format, units.fault);
   readUnit(units, settings, cad);

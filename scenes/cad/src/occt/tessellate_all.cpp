@@ -191,7 +191,9 @@ std::vector<std::size_t> longestFirst(const std::vector<TopoDS_Shape>& shapes,
 
 }  // namespace
 
-std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape, const std::function<void(double)>& tell) {
+std::vector<TopoDS_Shape> pieces(
+    const TopoDS_Shape& shape, const std::function<void(double)>& tell,
+    const std::function<void(const TopoDS_Shape& sewn, const TopoDS_Shape& face)>& remember) {
   std::vector<TopoDS_Shape> found;
   for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) found.push_back(it.Current());
   // Tolerance of sewing in mm: 1 um, which is enough for most IGES edges, and less for a tiny part.
@@ -207,6 +209,8 @@ std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape, const std::function<
     sewing.Perform(progress->Start());
     progress->rethrow();
     if (!sewing.SewedShape().IsNull()) found.push_back(sewing.SewedShape());
+    for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SOLID); remember && it.More(); it.Next())
+      if (sewing.IsModified(it.Current())) remember(sewing.Modified(it.Current()), it.Current());
   }
   return found;
 }

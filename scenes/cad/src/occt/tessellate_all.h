@@ -16,7 +16,10 @@ namespace vps::scenes::import {
 
 /// The rigid pieces of a shape: each solid, and the faces outside of solids, sewn together where they meet.
 /// @param tell  called with the share done while faces are sewn; may throw
-std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape, const std::function<void(double)>& tell = {});
+/// @param remember  called with each face that sewing made, and the face of `shape` of which it was made
+std::vector<TopoDS_Shape> pieces(
+    const TopoDS_Shape& shape, const std::function<void(double)>& tell = {},
+    const std::function<void(const TopoDS_Shape& sewn, const TopoDS_Shape& face)>& remember = {});
 
 struct TessellatedShape {
   std::size_t number = 0;                              ///< index of its tessellation
