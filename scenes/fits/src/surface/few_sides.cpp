@@ -16,8 +16,8 @@ namespace vps::scenes {
 namespace {
 
 constexpr std::size_t kFewest = 7, kMost = 24;
-constexpr double kOneSide_rad = 1e-4;    // facets that meet at a smaller angle belong to one flat side
-constexpr double kOnCircle = 2.5e-4;  // deviation of a corner from the circle, divided by its radius
+constexpr double kOneSide_rad = 1e-4;  // facets that meet at a smaller angle belong to one flat side
+constexpr double kOnCircle = 2.5e-4;   // deviation of a corner from the circle, divided by its radius
 
 double turnBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -143,8 +143,9 @@ std::string fewSidesWords(const PartSurface& surface) {
     std::vector<Vec3> normals;
     for (const std::uint32_t i : face.facets) {
       const Vec3 n = surface.normal(i);
-      if (normals.size() <= kMost &&
-          std::ranges::none_of(normals, [&](const Vec3& other) { return turnBetween(n, other) < kOneSide_rad; }))
+      if (normals.size() <= kMost && std::ranges::none_of(normals, [&](const Vec3& other) {
+            return turnBetween(n, other) < kOneSide_rad;
+          }))
         normals.push_back(n);
     }
     if (normals.size() > kMost || !isAllAround(surface, face)) continue;
