@@ -150,7 +150,10 @@ inline constexpr auto kWayFaultFields = std::make_tuple(
     field("allowed_m", &WayFault::allowed_m, "allowed depth: the depth at the target, plus 10 um"),
     field("at_m", &WayFault::at_W, "position of the greatest depth, in the world"),
     field("clearance_m", &WayFault::clearance_m, "for a `clearance` fault: least distance on the path"),
-    field("planned_m", &WayFault::planned_m, "for a `clearance` fault: planned least distance"));
+    field("planned_m", &WayFault::planned_m, "for a `clearance` fault: planned least distance"),
+    field(
+        "error_m", &WayFault::error_m,
+        "bound of the error of `depth_m`: the distance of both meshes from their true faces; null: unknown"));
 static_assert(coversAllMembers<WayFault>(kWayFaultFields));
 
 }  // namespace vps::scenes
