@@ -161,6 +161,29 @@ TEST_F(Plan, NothingToAssembleIsSaid) {
   EXPECT_NE(ran.out.find("The plan found no path for any part"), std::string::npos) << ran.out << ran.err;
 }
 
+// A block that has 20 um of play in a closed box, and a cap on the box: the block is proven to be shut in,
+// and the cap is mounted nevertheless.
+TEST_F(Plan, APartThatIsProvenToBeShutInBlocksTheProductWhoseOtherStepsAreRun) {
+  write("sealed.obj", objOf({{"box", {0, 0, 0}, {30, 30, 5}},
+                             {"box", {0, 0, 15.02}, {30, 30, 20}},
+                             {"box", {0, 0, 5}, {10, 30, 15.02}},
+                             {"box", {20.02, 0, 5}, {30, 30, 15.02}},
+                             {"box", {10, 0, 5}, {20.02, 10, 15.02}},
+                             {"box", {10, 20.02, 5}, {20.02, 30, 15.02}},
+                             {"block", {10.01, 10.01, 5.01}, {20.01, 20.01, 15.01}},
+                             {"cap", {10, 10, 20}, {20, 20, 26}}}));
+  const Ran ran = run("assemble sealed.obj --units mm --base box --out run --no-pictures");
+  EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("blocked at 'block', which cannot be taken off 'box' on any path"),
+            std::string::npos)
+      << ran.out << ran.err;
+  const json plan = json::parse(slurp(folder_ / "run/plan/plan.json"));
+  EXPECT_EQ(plan["verdict"], "blocked");
+  const json product = json::parse(slurp(folder_ / "run/assemble.json"));
+  ASSERT_EQ(product["steps"].size(), 1U);
+  EXPECT_EQ(product["steps"][0]["part"], "cap");
+}
+
 // The files as `vps import` accepts them.
 TEST_F(Plan, SeveralCadFilesAreOneAssemblyForPlanAssembleAndCheck) {
   write("plate.obj", objOf({kPlate}));
@@ -379,7 +402,7 @@ TEST_F(Plan, FaultsOfTheDrawingAreNamed) {
     return box;
   };
   const std::string frames =
-      wordsOf({{"plate", {0, 0, 20}, {60, 60, 30}}, bar("x", 0), bar("y", 1), bar("z", 2)}, 1);
+      wordsOf({{"plate", {0, 0, 20}, {60, 60, 30}}, bar("x", 0), bar("y", 1), bar("z", 2)}, 3);
   EXPECT_NE(frames.find("each part seems to be drawn in a frame of its own"), std::string::npos) << frames;
   EXPECT_EQ(large.find("each part seems to be drawn in a frame of its own"), std::string::npos) << large;
 

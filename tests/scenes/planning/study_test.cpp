@@ -205,27 +205,25 @@ TEST(Study, AToleranceClassIsRelativeToTheNominalSize) {
   EXPECT_NEAR(variables[1].upper, -5e-6, 1e-8);
 }
 
-// An offset of the hole from its drawn position reduces the room of the peg on one side.
-TEST(Study, AnOffsetPlaceIsInTheWayWhereItExceedsTheGap) {
+// A hole off its drawn position reduces the room of the peg on one side. An offset beyond the gap makes the
+// peg overlap as drawn, but the peg follows the hole within its tolerance, so that nothing is blocked.
+TEST(Study, AnOffsetPlaceThatThePegCanFollowDoesNotBlockIt) {
   Scene scene = pegInCup({4.01e-3, 4e-3});
   scene.parts[0].tolerance.position_m = 20e-6;
   scene.parts[0].tolerance.distribution = Distribution::Uniform;
   const std::vector<StudyVariable> variables = studyVariables(scene);
   ASSERT_EQ(variables.size(), 3U);
   const std::vector<StudyRun> runs = runStudy(scene, variables, kGeometry, upTo(24));
-  int fit = 0;
+  std::size_t beyond = 0;
   for (const StudyRun& run : runs) {
     const double off_m = std::hypot(run.values[0], run.values[1]);
-    fit += run.verdict == Verdict::Fits;
-    // The chords of 96 flats deviate by up to r (1 - cos(pi/96)) = 2.2 um from each surface.
+    beyond += off_m > 10e-6 ? 1 : 0;
+    EXPECT_NE(run.verdict, Verdict::Blocked) << run.run << ": " << off_m << " " << run.reason;
     if (off_m < 9.9e-6) {
       EXPECT_EQ(run.verdict, Verdict::Fits) << run.run << ": " << run.reason;
-    } else if (off_m > 10e-6 + 2 * 2.2e-6) {
-      EXPECT_EQ(run.verdict, Verdict::Blocked) << run.run << ": " << off_m;
     }
   }
-  EXPECT_GT(fit, 0);
-  EXPECT_LT(fit, 24);
+  EXPECT_GT(beyond, 0U);
 }
 
 TEST(Study, WithoutAToleranceOrWithOneThatIsNotKnownIsRefused) {

@@ -206,5 +206,18 @@ TEST(Verdicts, AStepsResultIsItsEvidence) {
   EXPECT_EQ(judge(evidenceOf(step, 100)).reason, "proof");
 }
 
+// Only a group that contains the part proves that the part is blocked.
+TEST(Verdicts, OfAnOverlapIsThatOfTheGroupThatContainsThePart) {
+  CheckedPlaces places;
+  EXPECT_EQ(judgeOverlap(places, "pin").verdict, Verdict::Fits);
+  places.verdict = Verdict::Blocked;
+  places.reason = "the key is too wide";
+  places.groups = {{{"key", "slot"}, Verdict::Blocked, "the key is too wide"},
+                   {{"hole", "pin"}, Verdict::NotShown, "no places were found"}};
+  EXPECT_EQ(judgeOverlap(places, "key").verdict, Verdict::Blocked);
+  EXPECT_EQ(judgeOverlap(places, "key").reason, "the key is too wide");
+  EXPECT_EQ(judgeOverlap(places, "pin").verdict, Verdict::NotShown);
+}
+
 }  // namespace
 }  // namespace vps::scenes

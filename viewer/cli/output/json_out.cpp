@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "output/json_fields.h"
+#include "output/reports.h"
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/fits/check_fields.h"
 #include "vps_scenes/fits/revision_fields.h"
@@ -316,13 +317,15 @@ std::string toJson(const scenes::SessionAnswer& answer) {
 
 std::string toJson(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults) {
   Json json = {{"wall", toObject(plan, scenes::kPlanWallFields)}};
+  json["verdict"] = scenes::toText(verdictOf(plan, faults));
   addFields(json, plan, scenes::kPlanFields);
   json["way_faults"] = wayFaults(faults);
   return text(json);
 }
 
 std::string toJson(const std::string& scene, const std::vector<scenes::WayFault>& faults) {
-  return text({{"scene", scene}, {"way_faults", wayFaults(faults)}});
+  return text(
+      {{"scene", scene}, {"verdict", scenes::toText(verdictOf(faults))}, {"way_faults", wayFaults(faults)}});
 }
 
 std::string toJson(const scenes::CheckResult& result, const scenes::RevisionChanges* against) {
@@ -388,6 +391,7 @@ std::string toJson(const scenes::MarginResult& result) {
   return text({{"scene", result.scene},
                {"resolution_m", result.resolution_m},
                {"by_contact", result.has_contact},
+               {"verdict", scenes::toText(result.verdict())},
                {"steps", steps}});
 }
 

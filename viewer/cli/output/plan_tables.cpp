@@ -8,6 +8,7 @@
 #include <set>
 
 #include "output/table.h"
+#include "vps_scenes/run/verdict.h"
 #include "vps_scenes/scene/number_words.h"
 #include "vps_viewer/report/words.h"
 
@@ -222,7 +223,38 @@ std::string planTables(const scenes::PlanResult& plan) {
   return out;
 }
 
-std::string planHeadline(const scenes::PlanResult& plan) {
+namespace {
+
+/// Whether the fault is one of the path, and not of what carries the part at its end.
+bool isOfPath(const scenes::WayFault& fault) {
+  return fault.kind != scenes::WayFaultKind::Support;
+}
+
+/// "'block' cannot leave 'housing'"
+std::string enclosedWords(const scenes::PlanResult& plan) {
+  std::string out;
+  for (const scenes::PlannedAssembly& assembly : plan.assemblies)
+    for (const scenes::BlockedPart& part : assembly.blocked)
+      if (!part.enclosed_by.empty())
+        out += (out.empty() ? "'" : ", '") + part.name + "' cannot leave '" + part.enclosed_by + "'";
+  return out;
+}
+
+}  // namespace
+
+scenes::Verdict verdictOf(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults) {
+  const bool has_fault = std::ranges::any_of(faults, isOfPath);
+  return scenes::worse(plan.verdict(), has_fault ? scenes::Verdict::NotShown : scenes::Verdict::Fits);
+}
+
+scenes::Verdict verdictOf(const std::vector<scenes::WayFault>& faults) {
+  scenes::Verdict worst = scenes::Verdict::Fits;
+  for (const scenes::WayFault& fault : faults)
+    worst = scenes::worse(worst, fault.isCertain() ? scenes::Verdict::Blocked : scenes::Verdict::NotShown);
+  return worst;
+}
+
+std::string planHeadline(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults) {
   std::string out = plan.assembly + ": " + scenes::counted(plan.steps(), "step");
   if (const std::size_t subs = plan.assemblies.size() - 1; subs > 0)
     out += ", " + scenes::counted(subs, "subassembly", "subassemblies");
@@ -232,6 +264,19 @@ std::string planHeadline(const scenes::PlanResult& plan) {
   if (const std::size_t proven = plan.enclosed(); proven > 0)
     out +=
         ", " + (proven == blocked ? "proven" : std::to_string(proven) + " of them proven") + " to have none";
+  const auto through = std::ranges::count_if(faults, isOfPath);
+  if (through > 0)
+    out += ", " + std::to_string(through) + (through == 1 ? " written path" : " written paths") +
+           " with a fault";
+  switch (verdictOf(plan, faults)) {
+    case scenes::Verdict::Fits:
+      break;
+    case scenes::Verdict::Blocked:
+      out += "; blocked: " + enclosedWords(plan);
+      break;
+    case scenes::Verdict::NotShown:
+      out += "; not shown: nothing proves that there are no other paths";
+  }
   return out + " in " + fixed(plan.check_wall_s + plan.plan_wall_s, 1) + " s";
 }
 
@@ -250,7 +295,8 @@ std::string inWords(const scenes::WayFault& fault) {
   const auto [depth, allowed] = toldApart(fault.depth_m, fault.allowed_m);
   return "the path of '" + fault.part + "' leads through '" + fault.against + "', " + depth +
          " mm deep at (" + fixed(1e3 * fault.at_W.x(), 2) + ", " + fixed(1e3 * fault.at_W.y(), 2) + ", " +
-         fixed(1e3 * fault.at_W.z(), 2) + ") mm (" + allowed + " mm allowed)" + remedy;
+         fixed(1e3 * fault.at_W.z(), 2) + ") mm (" + allowed + " mm allowed)" +
+         (fault.isCertain() ? "" : ", which the error of the meshes may account for") + remedy;
 }
 
 }  // namespace vps::viewer

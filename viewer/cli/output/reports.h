@@ -36,11 +36,20 @@ std::string revisionTables(const scenes::RevisionChanges& changes);
 std::string fastenerText(const std::vector<scenes::Fastener>& fasteners);
 /// Tables of the steps of all assemblies, and the parts for which no path was found.
 std::string planTables(const scenes::PlanResult& plan);
-/// The result in one sentence.
-std::string planHeadline(const scenes::PlanResult& plan);
+/// The result in one sentence, with the verdict where it is not Fits.
+std::string planHeadline(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults);
 /// The fault in words: "the path of 'peg' leads through 'wall', 3.20 mm deep at (1.0, 2.0, 3.0) mm (0.01 mm
 /// allowed)"
 std::string inWords(const scenes::WayFault& fault);
+
+/// The verdict of a plan whose written paths have these faults. A fault of a path that the plan has found is
+/// no proof that no other path exists, so that it turns Fits into NotShown. A part that nothing carries is no
+/// fault of a plan, which holds such parts.
+scenes::Verdict verdictOf(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults);
+
+/// The verdict of the paths that a scene states: Blocked if one has a fault for certain, NotShown if an
+/// overlap on a path may be an error of the meshes, else Fits.
+scenes::Verdict verdictOf(const std::vector<scenes::WayFault>& faults);
 
 // --- vps assemble, vps render and vps replay
 

@@ -271,17 +271,15 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   bar.clear();
   std::fputs(planTables(plan).c_str(), stdout);
   for (const scenes::WayFault& fault : faults) warn(inWords(fault));
-  std::printf("%s; scene: %s/scene.toml\n", planHeadline(plan).c_str(), given.out.c_str());
+  std::printf("%s; scene: %s/scene.toml\n", planHeadline(plan, faults).c_str(), given.out.c_str());
   book.write(scene, plan, !areCadFiles(given.assembly), bar);
-  // The plan has already reported parts that nothing carries.
-  const bool is_free = std::ranges::all_of(
-      faults, [](const scenes::WayFault& fault) { return fault.kind == scenes::WayFaultKind::Support; });
-  // That no path was found is no proof that there is none.
-  const int status = !is_free || plan.enclosed() > 0 ? kBad : plan.blocked() > 0 ? kNotShown : kGood;
-  PlannedFolder folder{status, plan.steps(), {}};
-  for (std::size_t i = 0; i < plan.assemblies.size(); ++i)
+  PlannedFolder folder{verdictOf(plan, faults), plan.steps(), {}, {}};
+  for (std::size_t i = 0; i < plan.assemblies.size(); ++i) {
     folder.scene_files.push_back({(std::filesystem::path(given.out) / sceneFileName(plan, i)).string(),
                                   !plan.assemblies[i].steps.empty()});
+    for (const scenes::BlockedPart& part : plan.assemblies[i].blocked)
+      if (!part.enclosed_by.empty()) folder.enclosed.push_back(part);
+  }
   return folder;
 }
 

@@ -30,7 +30,8 @@ void addPlanOptions(CLI::App& command, PlanArguments& given);
 
 /// Result of planInto().
 struct PlannedFolder {
-  int status = 0;         ///< the program's exit status
+  /// Blocked if a part is proven to have no path; see verdictOf(PlanResult, faults).
+  scenes::Verdict verdict = scenes::Verdict::Fits;
   std::size_t steps = 0;  ///< number of steps of all assemblies
   struct SceneFile {
     std::string path;
@@ -38,6 +39,7 @@ struct PlannedFolder {
   };
   /// The scene of the product, then those of its subassemblies, each after the assembly that mounts it.
   std::vector<SceneFile> scene_files;
+  std::vector<scenes::BlockedPart> enclosed;  ///< the parts that are proven to have no path
 };
 
 /// File in which a stopped planInto() keeps its results.

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "check/check_placed.h"
+#include "pair/pair_measures.h"
 #include "surface/placed_surface.h"
 #include "vps/stoppable.h"
 #include "ways/pair_motions.h"
@@ -62,6 +63,8 @@ class WayCheck {
     WayFault worst;
     for (const Pose& X_WP : poses_W()) consider(X_WP, worst);
     for (const WayPiece& piece : pieces_W()) follow(piece, worst);
+    for (const PlacedSurface* held : held_->parts)
+      if (held->name == worst.against) worst.error_m = meshError_m(part_, *held);
     return worst;
   }
 

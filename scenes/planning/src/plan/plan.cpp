@@ -55,6 +55,11 @@ std::size_t PlanResult::enclosed() const {
   return count;
 }
 
+Verdict PlanResult::verdict() const {
+  if (enclosed() > 0) return Verdict::Blocked;
+  return blocked() > 0 ? Verdict::NotShown : Verdict::Fits;
+}
+
 namespace {
 
 /// Distance that parts move on their last leg until they have left the boxes of all held parts, plus half of

@@ -56,10 +56,8 @@ class StepProbe {
   StepMargin measure() {
     StepMargin out;
     out.part = scene_.parts[scene_.steps[0].part].part.name;
-    if (scene_.steps[0].tolerance_m <= 0) {  // the part has the tolerance of its drawn size at all sizes
-      Scene drawn = scene_;
-      scene_.steps[0].tolerance_m = checkDrawnTargets(drawn, {})[0].tolerance_m;
-    }
+    // The part has the tolerance of its drawn size at all sizes.
+    if (scene_.steps[0].tolerance_m <= 0) scene_.steps[0].tolerance_m = drawnTolerances_m(scene_)[0];
     measureGrowth(out);
     measurePlay(out);
     out.checks = checks_;
@@ -72,7 +70,8 @@ class StepProbe {
 
   Judgement byGeometry(double by_m) {
     ++checks_;
-    return judge({.blocked = fit_.findMisfit(withGrownStep(scene_, 0, by_m)).reason});
+    DrawnMisfit misfit = fit_.findMisfit(withGrownStep(scene_, 0, by_m));
+    return {misfit.verdict, std::move(misfit.reason)};
   }
 
   Judgement byContact(double by_m) {
@@ -186,6 +185,13 @@ class StepProbe {
 };
 
 }  // namespace
+
+Verdict MarginResult::verdict() const {
+  Verdict worst = steps.empty() ? Verdict::NotShown : Verdict::Fits;
+  for (const StepMargin& step : steps)
+    if (!step.goes) worst = worse(worst, step.fails_as);
+  return worst;
+}
 
 MarginResult measureMargins(const Scene& scene, const MarginOptions& options) {
   requireSteps(scene);

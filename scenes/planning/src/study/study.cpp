@@ -56,9 +56,8 @@ class Study {
     out.values = sampleStudy(variables_, settings_.seed, number);
     Scene scene = sampledScene(scene_, variables_, settings_.seed, number);
     DrawnMisfit misfit = fit_.findMisfit(scene);
-    Judgement by_geometry = judge({.blocked = std::move(misfit.reason)});
-    out.verdict = by_geometry.verdict;
-    out.reason = std::move(by_geometry.reason);
+    out.verdict = misfit.verdict;
+    out.reason = std::move(misfit.reason);
     out.part = std::move(misfit.part);
     if (settings_.has_contact && isGood(out.verdict)) byContact(scene, stop, out);
     return out;

@@ -59,6 +59,11 @@ StudyEffect effectOf(const StudyVariable& variable, std::size_t index, const Stu
 
 }  // namespace
 
+Verdict StudyResult::verdict() const {
+  if (good > 0) return Verdict::Fits;
+  return !runs.empty() && blocked == runs.size() ? Verdict::Blocked : Verdict::NotShown;
+}
+
 StudyResult sumUpStudy(const std::string& scene, const std::vector<StudyVariable>& variables,
                        const StudySettings& settings, std::vector<StudyRun> runs) {
   StudyResult result;

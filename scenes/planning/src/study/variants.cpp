@@ -7,9 +7,11 @@
 
 #include "check/check_placed.h"
 #include "models/scene_models.h"
+#include "proof/places.h"
 #include "scene/steps.h"
 #include "text/words.h"
 #include "vps_scenes/fits/check.h"
+#include "vps_scenes/run/verdict.h"
 
 namespace vps::scenes {
 
@@ -131,34 +133,32 @@ bool mayOverlap(const CheckResult& checked, const CheckedFit& fit) {
   });
 }
 
-DrawnMisfit ofPair(const Scene& scene, const CheckedPair& pair) {
+DrawnMisfit ofPair(const Scene& scene, const CheckedPair& pair, const CheckedPlaces& places) {
   const bool is_a = isMoved(scene, pair.a);
   if (!pair.isClash() || (!is_a && !isMoved(scene, pair.b))) return {};
   const std::string& part = is_a ? pair.a : pair.b;
   const std::string& other = is_a ? pair.b : pair.a;
-  return {part, other,
-          std::string("it overlaps '")
-              .append(other)
-              .append("' by ")
-              .append(lengthInWords(pair.interference_depth_m))
-              .append(" (error ")
-              .append(lengthInWords(pair.error_m))
-              .append(")")};
+  const Judgement found = judgeOverlap(places, part);
+  if (isGood(found.verdict)) return {};
+  return {found.verdict, part, other,
+          overlapReason(other, pair.interference_depth_m, pair.error_m, pair.at_W) + "; " + found.reason};
 }
 
-DrawnMisfit ofFit(const Scene& scene, const CheckedFit& fit) {
+/// @param room_m  diametral clearance of the shaft, less what the check does not assume to be corrected
+DrawnMisfit ofFit(const Scene& scene, const CheckedFit& fit, double room_m, Verdict verdict) {
   const bool is_shaft = isMoved(scene, fit.shaft);
   if (fit.kind == FitKind::Thread || (!is_shaft && !isMoved(scene, fit.bore))) return {};
-  const double room_m = fit.diametral_clearance_m - 2 * fit.offset_m;
   if (room_m + fit.error_m >= -kRounding_m) return {};
-  const std::string& part = is_shaft ? fit.shaft : fit.bore;
-  return {part, is_shaft ? fit.bore : fit.shaft,
-          std::string("'")
-              .append(fit.shaft)
-              .append("' is larger than the room in '")
-              .append(fit.bore)
-              .append("' by ")
-              .append(lengthInWords(-room_m))};
+  std::string reason =
+      "'" + fit.shaft + "' is larger than the room in '" + fit.bore + "' by " + lengthInWords(-room_m);
+  if (verdict == Verdict::NotShown)
+    reason += " because their axes are drawn apart, and nothing shows places at which they are not";
+  return {verdict, is_shaft ? fit.shaft : fit.bore, is_shaft ? fit.bore : fit.shaft, std::move(reason)};
+}
+
+bool isFreed(const CheckedPlaces& places, const CheckedFit& fit) {
+  return std::ranges::any_of(
+      places.moved, [&](const MovedPart& part) { return part.name == fit.shaft || part.name == fit.bore; });
 }
 
 }  // namespace
@@ -175,14 +175,32 @@ DrawnMisfit DrawnFit::findMisfit(const Scene& variant) const {
   settings.has_play = false;
   for (const SceneStep& step : variant.steps)
     settings.only_parts.push_back(variant.parts[step.part].part.name);
-  const CheckResult checked = check(variant, settings);
-  for (const CheckedPair& pair : checked.pairs)
-    if (DrawnMisfit found = ofPair(variant, pair); found.isFound()) return found;
-  for (const CheckedFit& fit : checked.fits) {
-    if (mayOverlap(checked, fit)) continue;
-    if (DrawnMisfit found = ofFit(variant, fit); found.isFound()) return found;
+  const std::vector<DrawnPart> parts = drawnParts(variant);
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, {}, placed_);
+  const CheckResult checked = checkPlaced(variant.name, placed, settings, {});
+  std::vector<const CheckedFit*> fits;
+  for (const CheckedFit& fit : checked.fits)
+    if (!mayOverlap(checked, fit)) fits.push_back(&fit);
+  for (const CheckedFit* fit : fits)
+    if (DrawnMisfit found = ofFit(variant, *fit, fit->diametral_clearance_m, Verdict::Blocked);
+        found.isFound())
+      return found;
+  // All pairs that contain a moved part were measured, and no other part moves. Scenery takes no part in a
+  // run, so that places that are found with it say nothing.
+  const bool has_scenery = std::ranges::any_of(variant.parts, &ScenePart::is_scenery);
+  const CheckedPlaces places = has_scenery ? checked.places : freePlaces(placed, checked, {});
+  DrawnMisfit open;
+  for (const CheckedPair& pair : checked.pairs) {
+    DrawnMisfit found = ofPair(variant, pair, places);
+    if (found.verdict == Verdict::Blocked) return found;
+    if (!open.isFound()) open = std::move(found);
   }
-  return {};
+  for (const CheckedFit* fit : fits) {
+    if (open.isFound()) break;
+    if (!isFreed(places, *fit))
+      open = ofFit(variant, *fit, fit->diametral_clearance_m - 2 * fit->offset_m, Verdict::NotShown);
+  }
+  return open;
 }
 
 }  // namespace vps::scenes

@@ -39,10 +39,11 @@ Scene withDeviations(const Scene& scene, const std::vector<PartDeviation>& devia
 /// scene.
 Scene excerptOf(const Scene& scene, std::size_t step);
 
-/// Reason why a moved part cannot be at its target, by exact distance; empty: nothing blocks it.
+/// Whether a moved part can be at its target or near it, by exact distance.
 struct DrawnMisfit {
-  std::string part, other, reason;
-  [[nodiscard]] bool isFound() const { return !reason.empty(); }
+  Verdict verdict = Verdict::Fits;  ///< Blocked: proven; NotShown: neither places nor a proof were found
+  std::string part, other, reason;  ///< empty if the verdict is Fits
+  [[nodiscard]] bool isFound() const { return verdict != Verdict::Fits; }
 };
 
 /// Finds misfits in variants of one scene. The parts of the scene are prepared once.
@@ -50,9 +51,11 @@ class DrawnFit {
  public:
   explicit DrawnFit(const Scene& scene);
 
-  /// A misfit is an overlap that exceeds its error of measurement, or a shaft that is larger than its bore,
-  /// measured on the cylinders that the meshes approximate. Overlaps that the scene allows or declares are
-  /// not misfits.
+  /// A misfit is an overlap, by more than its error of measurement, from which the check finds no places
+  /// without overlap near the drawn ones (CheckedPlaces), or a shaft that is larger than its bore, measured
+  /// on the cylinders that the meshes approximate. A shaft that is larger only because the axes are drawn
+  /// apart is not shown to fit, since the meshes do not show this overlap. Overlaps that the scene allows or
+  /// declares are not misfits.
   [[nodiscard]] DrawnMisfit findMisfit(const Scene& variant) const;
 
   /// Checks the variant; parts that equal those of the prepared scene are not prepared again.

@@ -57,6 +57,15 @@ Judgement judge(const Evidence& evidence) {
   return {rule->verdict, rule->reason(evidence)};
 }
 
+Judgement judgeOverlap(const CheckedPlaces& places, const std::string& part) {
+  if (places.verdict == Verdict::Fits) return {};
+  const auto proven = std::ranges::find_if(places.groups, [&](const CheckedGroup& group) {
+    return group.verdict == Verdict::Blocked && std::ranges::find(group.parts, part) != group.parts.end();
+  });
+  if (proven != places.groups.end()) return {Verdict::Blocked, proven->reason};
+  return {Verdict::NotShown, places.reason};
+}
+
 std::string overlapReason(const std::string& other, double depth_m, double error_m, const Vec3& at_W) {
   return "as drawn, the part overlaps '" + other + "' by " + lengthInWords(depth_m) + " (error " +
          lengthInWords(error_m) + ") at " + placeInWords(at_W);

@@ -117,21 +117,17 @@ const std::string* otherOf(const std::string& part, const std::string& a, const 
 /// Decides about a part that overlaps `blocked_by` as drawn. It is blocked unless the search has found places
 /// at which no parts overlap at all. overlap_doubt tells a block that is not proven for the places near by.
 void judgeByPlaces(const CheckedPlaces& places, StepResult& step) {
-  if (places.verdict == Verdict::Fits) {
+  const Judgement found = judgeOverlap(places, step.part);
+  if (isGood(found.verdict)) {
     step.blocked_by = step.reason = "";
     step.blocked_at_W = Vec3::Zero();
     step.blocked_depth_m = step.blocked_error_m = 0;
     return;
   }
-  const auto isProven = [&](const CheckedGroup& group) {
-    return group.verdict == Verdict::Blocked &&
-           std::ranges::find(group.parts, step.part) != group.parts.end();
-  };
-  const auto proven = std::ranges::find_if(places.groups, isProven);
-  if (proven != places.groups.end())
-    step.reason += "; " + proven->reason;
+  if (found.verdict == Verdict::Blocked)
+    step.reason += "; " + found.reason;
   else
-    step.overlap_doubt = places.reason;
+    step.overlap_doubt = found.reason;
 }
 
 void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
@@ -281,6 +277,15 @@ double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_pl
 }
 
 }  // namespace
+
+std::vector<double> drawnTolerances_m(const Scene& scene) {
+  const CheckResult checked = checkAssembly(scene.name, drawnParts(scene), {.has_play = false});
+  std::vector<double> out;
+  for (std::size_t i = 0; i < scene.steps.size(); ++i)
+    out.push_back(toleranceOf(checked, inPlaceBefore(scene, i), scene.steps[i],
+                              scene.parts[scene.steps[i].part].part.name));
+  return out;
+}
 
 std::vector<StepResult> checkDrawnTargets(Scene& scene, const Progress& progress,
                                           std::shared_ptr<const CheckResult>* to) {

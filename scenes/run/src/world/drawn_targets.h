@@ -22,4 +22,8 @@ namespace vps::scenes {
 std::vector<StepResult> checkDrawnTargets(Scene& scene, const Progress& progress,
                                           std::shared_ptr<const CheckResult>* checked = nullptr);
 
+/// The tolerance of each step's part at its target [m], as checkDrawnTargets() states it. Searches for no
+/// places and decides nothing about overlaps.
+std::vector<double> drawnTolerances_m(const Scene& scene);
+
 }  // namespace vps::scenes

@@ -166,8 +166,15 @@ std::vector<std::string> filesOf(const AssembleArguments& given) {
   return files;
 }
 
+/// Prints the parts that are proven to have no path, which blocks the product whatever the runs show.
+void sayEnclosed(const PlannedFolder& planned) {
+  for (const scenes::BlockedPart& part : planned.enclosed)
+    std::printf("No, the parts do not go together: blocked at '%s', which%s.\n", part.name.c_str(),
+                withoutPathWords(part, "").c_str());
+}
+
 /// Plans the CAD files into the folder `plan` of the results, then runs the planned scenes. The exit status
-/// is kGood only if both the plan and the runs are good.
+/// is that of the worse verdict of the plan and of the runs.
 int runCad(AssembleArguments given) {
   PlanArguments plan = std::move(given.plan);
   plan.assembly = filesOf(given);
@@ -177,7 +184,7 @@ int runCad(AssembleArguments given) {
   requireNotRead(given.json, plan.assembly);
   ProgressBar bar;
   const PlannedFolder planned = planInto(plan, bar);
-  if (planned.steps == 0 && planned.status == kGood)
+  if (planned.steps == 0 && scenes::isGood(planned.verdict))
     throw LoadError(
         given.scene.scene, "",
         "has one part, so there is nothing to assemble; give the files of the other parts too, or "
@@ -185,13 +192,14 @@ int runCad(AssembleArguments given) {
   if (planned.steps == 0) {
     std::printf(
         "The plan found no path for any part, so nothing was run; the plan names what is in the way.\n");
-    return planned.status;
+    sayEnclosed(planned);
+    return scenes::exitStatusOf(planned.verdict);
   }
   given.plan = {};
   const scenes::Verdict verdict = runPlanned(given, planned.scene_files);
-  // A part without a path was not run, and a fault of a planned path is no proof.
-  const scenes::Verdict of_plan = planned.status == kGood ? scenes::Verdict::Fits : scenes::Verdict::NotShown;
-  return scenes::exitStatusOf(scenes::worse(verdict, of_plan));
+  // A part without a path was not run, so that the runs alone do not tell whether the product goes together.
+  sayEnclosed(planned);
+  return scenes::exitStatusOf(scenes::worse(verdict, planned.verdict));
 }
 
 int runAssemble(const AssembleArguments& given) {

@@ -45,8 +45,10 @@ int tell(const scenes::MarginResult& result) {
   if (result.steps.empty()) return kCouldNot;
   const scenes::StepMargin& worst = result.steps.front();
   if (!worst.goes) {
-    std::printf("'%s' fails as drawn: %s\n", worst.part.c_str(), worst.fails_why.c_str());
-    return scenes::exitStatusOf(worst.fails_as);
+    std::printf("'%s' %s as drawn: %s\n", worst.part.c_str(),
+                worst.fails_as == scenes::Verdict::Blocked ? "is blocked" : "is not shown to go in",
+                worst.fails_why.c_str());
+    return scenes::exitStatusOf(result.verdict());
   }
   std::printf("The tightest step is '%s': each of its faces may grow by %s um%s.\n", worst.part.c_str(),
               um(worst.growth_m).c_str(), result.has_contact ? "" : " at most, by geometry alone");

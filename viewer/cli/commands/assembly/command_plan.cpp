@@ -12,6 +12,7 @@
 #include "output/terminal.h"
 #include "vps/errors.h"
 #include "vps_scenes/planning/plan.h"
+#include "vps_scenes/run/verdict.h"
 #include "vps_scenes/scene/number_words.h"
 #include "work/planned_folder.h"
 
@@ -32,9 +33,14 @@ int verify(const PlanArguments& given) {
   json.write(toJson(scene.name, faults));
   bar.clear();
   for (const scenes::WayFault& fault : faults) std::printf("%s\n", inWords(fault).c_str());
-  std::printf("%s: %s, %zu with faults\n", scene.name.c_str(),
-              scenes::counted(scene.steps.size(), "step").c_str(), faults.size());
-  return faults.empty() ? kGood : kBad;
+  const scenes::Verdict verdict = verdictOf(faults);
+  const char* const words = verdict == scenes::Verdict::Blocked ? "; the procedure as written is blocked"
+                            : verdict == scenes::Verdict::NotShown
+                                ? "; not shown: the meshes are too coarse to tell whether the paths are free"
+                                : "";
+  std::printf("%s: %zu steps, %zu with faults%s\n", scene.name.c_str(), scene.steps.size(), faults.size(),
+              words);
+  return scenes::exitStatusOf(verdict);
 }
 
 struct PlanCommandArguments : PlanArguments {
@@ -45,7 +51,7 @@ int runPlan(const PlanCommandArguments& given) {
   if (given.is_verify) return verify(given);
   if (given.out.empty()) throw LoadError("", "", "--out is missing; name a folder for the planned scene");
   ProgressBar bar;
-  return planInto(given, bar).status;
+  return scenes::exitStatusOf(planInto(given, bar).verdict);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "output/terminal.h"
 #include "vps/errors.h"
 #include "vps_scenes/planning/study.h"
+#include "vps_scenes/run/verdict.h"
 #include "vps_viewer/report/pages.h"
 #include "work/study_log.h"
 #include "work/study_on_dask.h"
@@ -173,7 +174,9 @@ int runStudyCommand(StudyArguments given, bool has_last) {
   bar.clear();
   printResult(result);
   pdf.write(page);  // printed last, so that a failure loses no other result
-  return kGood;
+  // A task makes a share of the runs; the study that sums them up has the verdict.
+  const bool is_whole = result.runs.size() == given.runs;
+  return is_whole ? scenes::exitStatusOf(result.verdict()) : kGood;
 }
 
 }  // namespace

@@ -20,11 +20,17 @@ std::string colorOf(const scenes::StepMargin& step) {
   return step.goes ? "#3b6ea5" : "#b00020";
 }
 
+/// The words of a step that fails as drawn.
+std::string notGoingWords(const scenes::StepMargin& step) {
+  return step.fails_as == scenes::Verdict::Blocked ? "does not go in as drawn"
+                                                   : "not shown to go in as drawn";
+}
+
 std::string growthChart(const scenes::MarginResult& result) {
   std::vector<Bar> bars;
   for (const scenes::StepMargin& step : result.steps)
     bars.push_back({nameOf(step), step.growth_m,
-                    !step.goes            ? "does not go in as drawn"
+                    !step.goes            ? notGoingWords(step)
                     : step.growth_fails_m ? micrometres(step.growth_m) + " µm"
                                           : "more than " + micrometres(step.growth_m) + " µm",
                     colorOf(step)});
@@ -70,8 +76,11 @@ std::string answer(const scenes::MarginResult& result) {
   if (result.steps.empty()) return "<p class=\"verdict unsure\">No step was measured.</p>\n";
   const scenes::StepMargin& worst = result.steps.front();
   if (!worst.goes)
-    return "<p class=\"verdict bad\">As drawn, " + escapeHtml(worst.part) +
-           " does not go in: " + escapeHtml(worst.fails_why) + "</p>\n";
+    return worst.fails_as == scenes::Verdict::Blocked
+               ? "<p class=\"verdict bad\">As drawn, " + escapeHtml(worst.part) +
+                     " does not go in: " + escapeHtml(worst.fails_why) + "</p>\n"
+               : "<p class=\"verdict unsure\">It is not shown that " + escapeHtml(worst.part) +
+                     " goes in as drawn: " + escapeHtml(worst.fails_why) + "</p>\n";
   return "<p class=\"verdict good\">The tightest step is " + escapeHtml(worst.part) +
          ": every face may grow by " + micrometres(worst.growth_m) + " µm.</p>\n";
 }

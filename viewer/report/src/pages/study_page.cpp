@@ -92,8 +92,9 @@ std::string studyPage(const scenes::StudyResult& result) {
                      (result.good == result.runs.size() ? "good" : "unsure") + "\">" + yieldSentence(result) +
                      "</p>\n<p>";
   body += result.settings.has_contact
-              ? "Each run draws all deviations and a seed of the hand. Runs that exact distances rule out "
-                "are blocked; all others are assembled by contact."
+              ? "Each run draws all deviations and a seed of the hand. Runs that exact distances "
+                "rule out are blocked; runs whose parts overlap as drawn, without places near by and without "
+                "a proof, are not shown; all others are assembled by contact."
               : "Each run draws all deviations and is judged by exact distances alone, without the hand.";
   body += " The interval is Wilson's. Sizes are deviations of diameter or width from the drawing.</p>\n";
   body += "<h2>Loss of yield by tolerance</h2>\n" + gainChart(result) + effectTable(result);

@@ -201,7 +201,10 @@ std::string freeWords(const std::vector<scenes::MovedPart>& moved) {
 std::string assemblyWords(const scenes::CheckResult& result) {
   switch (result.places.verdict) {
     case scenes::Verdict::Blocked:
-      return "cannot be assembled with its parts where they are drawn: " + result.places.reason;
+      return "cannot be assembled with its parts where they are drawn, or within 0.5 mm of there (other "
+             "places "
+             "were not examined): " +
+             result.places.reason;
     case scenes::Verdict::NotShown:
       return "whether the parts can be assembled is not shown: " + result.places.reason;
     case scenes::Verdict::Fits:

@@ -241,7 +241,8 @@ inline constexpr auto kCheckedGroupFields = std::make_tuple(
 inline constexpr auto kCheckedPlacesFields = std::make_tuple(
     field("verdict", &CheckedPlaces::verdict,
           "`fits`: no parts overlap as drawn, or after the parts of `moved` are moved; `blocked`: it is "
-          "proven that no places without overlap exist; `not_shown`: neither places without overlap nor a "
+          "proven that no places without overlap exist within 0.5 mm of the drawn ones (places farther away "
+          "were not examined); `not_shown`: neither places without overlap nor a "
           "proof were found"),
     field("reason", &CheckedPlaces::reason, "reason for a verdict other than `fits`, in words"));
 

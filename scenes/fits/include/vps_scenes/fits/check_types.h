@@ -21,7 +21,7 @@ namespace vps::scenes {
 /// The answer to "do the parts go together?".
 enum class Verdict {
   Fits,      ///< the part reaches its place by contact within tolerance, overlaps nothing and stays there
-  Blocked,   ///< proven by geometry: as drawn, the part overlaps another by more than the error of the meshes
+  Blocked,   ///< proven by geometry; of a check: for all places within 0.5 mm of the drawn ones, no others
   NotShown,  ///< the simulated hand failed, and nothing proves that the step is impossible
 };
 

@@ -57,6 +57,8 @@ struct MarginResult {
   double resolution_m = 0;
   bool has_contact = true;
   std::vector<StepMargin> steps;  ///< steps that fail as drawn first, then in order of growth_m
+  /// The worst verdict of the steps as drawn; NotShown if no step was measured.
+  [[nodiscard]] VPS_SCENES_API Verdict verdict() const;
 };
 
 /// Measures each step by itself, with the part of the step offset by shrunkMesh() and all other parts as

@@ -163,7 +163,10 @@ inline constexpr auto kWayFaultFields = std::make_tuple(
           "0.2 um, the error of both measurements"),
     field("at_m", &WayFault::at_W, "position of the greatest depth, in the world"),
     field("clearance_m", &WayFault::clearance_m, "for a `clearance` fault: least distance on the path"),
-    field("planned_m", &WayFault::planned_m, "for a `clearance` fault: planned least distance"));
+    field("planned_m", &WayFault::planned_m, "for a `clearance` fault: planned least distance"),
+    field(
+        "error_m", &WayFault::error_m,
+        "bound of the error of `depth_m`: the distance of both meshes from their true faces; null: unknown"));
 static_assert(coversAllMembers<WayFault>(kWayFaultFields));
 
 }  // namespace vps::scenes

@@ -176,6 +176,8 @@ struct PlanResult {
   [[nodiscard]] std::size_t blocked() const;
   /// Number of parts among them that are proven to have no path.
   [[nodiscard]] std::size_t enclosed() const;
+  /// Blocked if a part is proven to have no path; NotShown if no path was found for a part; else Fits.
+  [[nodiscard]] Verdict verdict() const;
 };
 
 enum class WayFaultKind {
@@ -194,6 +196,10 @@ struct WayFault {
   double allowed_m = 0;  ///< overlap of the meshes at the target, plus 10 um
   Vec3 at_W = Vec3::Zero();
   double clearance_m = 0, planned_m = 0;  ///< least and planned clearance of a Clearance fault
+  /// Bound of the error of depth_m: distance of both meshes from their true faces. Infinite: unknown.
+  double error_m = 0;
+  /// Whether the fault is more than the error of the meshes may account for.
+  [[nodiscard]] bool isCertain() const { return depth_m == 0 || depth_m - error_m > allowed_m; }
 };
 
 }  // namespace vps::scenes

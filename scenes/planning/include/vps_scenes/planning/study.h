@@ -68,6 +68,8 @@ struct StudyResult {
   double yield = 0, yield_low = 0, yield_high = 0;  ///< yield with Wilson's 95 % interval
   std::vector<StudyEffect> effects;                 ///< sorted by gain, the greatest gain first
   std::vector<StudyRun> runs;                       ///< in order of run numbers
+  /// Fits if at least one run fits, Blocked if all runs are blocked, else NotShown.
+  [[nodiscard]] VPS_SCENES_API Verdict verdict() const;
 };
 
 struct StudyOptions : ModelOptions {

@@ -32,8 +32,11 @@ inline constexpr auto kStudyFields =
                     field("seed", path(&StudyResult::settings, &StudySettings::seed), "seed of the study"),
                     field("by_contact", path(&StudyResult::settings, &StudySettings::has_contact),
                           "the virtual hand made the runs; false: geometry alone judged the runs"),
+                    field("verdict", &StudyResult::verdict,
+                          "`fits`: at least one run fits; `blocked`: all runs are blocked; `not_shown`: no "
+                          "run fits, and some are not proven to be blocked"),
                     field("good", &StudyResult::good, "runs that fit"),
-                    field("blocked", &StudyResult::blocked, "runs that geometry rules out"),
+                    field("blocked", &StudyResult::blocked, "runs that are proven by geometry to be blocked"),
                     field("yield", &StudyResult::yield, "share of the runs that fit"),
                     field("yield_low", &StudyResult::yield_low, "lower end of Wilson's 95 % interval"),
                     field("yield_high", &StudyResult::yield_high, "upper end of Wilson's 95 % interval"),

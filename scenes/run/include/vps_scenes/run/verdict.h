@@ -69,6 +69,11 @@ struct Judgement {
 /// if the evidence meets no rule.
 VPS_SCENES_API Judgement judge(const Evidence& evidence);
 
+/// The verdict of a part that overlaps others as drawn, by the places that the check has found: Fits if the
+/// parts can be brought to places without overlap, Blocked if it is proven for the part that there are none
+/// near its drawn place, else NotShown. The reason is that of the places.
+VPS_SCENES_API Judgement judgeOverlap(const CheckedPlaces& places, const std::string& part);
+
 /// Evidence::blocked of a part that, as drawn, overlaps another one by more than the error of the meshes.
 /// @param at_W  where the overlap is deepest
 VPS_SCENES_API std::string overlapReason(const std::string& other, double depth_m, double error_m,

@@ -70,8 +70,8 @@ VPS_VIEWER_API std::string playWords(double way, double error, double usual, dou
 VPS_VIEWER_API std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result);
 
 /// The answer to "do the parts go together?", unless it is yes for the parts as drawn: "can be assembled:
-/// free if 'bolt' moves by 0.050 mm along +x", "cannot be assembled with its parts where they are drawn:
-/// ...", "not shown: ..."; empty if the parts go together as drawn.
+/// free if 'bolt' moves by 0.050 mm along +x", "cannot be assembled with its parts where they are drawn,
+/// or within 0.5 mm of there ...", "not shown: ..."; empty if the parts go together as drawn.
 VPS_VIEWER_API std::string assemblyWords(const scenes::CheckResult& result);
 
 /// The differences of two revisions in one sentence: "3 parts, 1 clearance and 2 fits changed; the answer was
