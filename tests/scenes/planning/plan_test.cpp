@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <stdexcept>
+#include <string_view>
 
 #include "scenes/assemblies_to_plan.h"
 #include "support/screw.h"
