@@ -28,7 +28,7 @@ std::string objOf(const Mesh& mesh, std::size_t first, const std::string& color 
     text += "v " + objNumber(p.x()) + " " + objNumber(p.y()) + " " + objNumber(p.z()) + color + "\n";
   for (const auto& t : mesh.triangles) {
     text += "f";
-    for (const std::uint32_t i : t) text += " " + std::to_string(i + first);
+    for (const std::uint32_t i : t) text.append(" ").append(std::to_string(i + first));
     text += "\n";
   }
   return text;
@@ -299,7 +299,7 @@ std::string plyText(const Mesh& mesh, const PlyForm& form, bool is_ascii,
       put(static_cast<std::uint8_t>(3));
     for (const std::uint32_t i : t) {
       if (is_ascii)
-        text += " " + std::to_string(i);
+        text.append(" ").append(std::to_string(i));
       else if (form.index == "ushort")
         put(static_cast<std::uint16_t>(i));
       else if (form.index == "uchar")

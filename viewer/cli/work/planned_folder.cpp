@@ -23,6 +23,7 @@
 #include "vps/errors.h"
 #include "vps/write_file.h"
 #include "vps_scenes/fits/check.h"
+#include "vps_scenes/fits/rules.h"
 #include "vps_scenes/planning/plan.h"
 #include "vps_scenes/scene/number_words.h"
 #include "vps_scenes/scene/scene_text.h"

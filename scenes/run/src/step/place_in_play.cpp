@@ -202,7 +202,9 @@ std::string inWords(const PlaceInPlay& place) {
   for (const AxisRoom& room : place.rooms) {
     if (std::abs(room.off) <= (room.is_turn ? kLeastTurn_rad : kTouch_m)) continue;
     const auto amount = [&](double a) {
-      return (a < 0 ? "-" : "") + (room.is_turn ? finelyInWords(std::abs(a)) : lengthInWords(std::abs(a)));
+      std::string text = a < 0 ? "-" : "";
+      text += room.is_turn ? finelyInWords(std::abs(a)) : lengthInWords(std::abs(a));
+      return text;
     };
     words += (words.empty() ? "off by " : "; off by ") + amount(room.off) +
              (room.is_turn ? " about " : " along ") + axisInWords(room.axis_W);
