@@ -14,7 +14,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr int kShaftFlats = 96;
-constexpr double kLand_m = 16e-3, kHole_m = 16.025e-3, kNeck_m = 15e-3;
+constexpr double kLand_m = 16e-3, kRingHole_m = 16.025e-3, kNeck_m = 15e-3;
 
 /// The lands are 20 mm long and 25 mm apart, with sharp edges; the ring rests on a collar below the second
 /// one.
@@ -30,7 +30,8 @@ Scene ringOverTwoLands(std::uint64_t seed) {
                                   {kLand_m, 65e-3},
                                   {0, 65e-3}},
                                  kShaftFlats);
-  const Mesh ring = test::lathe({{kHole_m, 0}, {24e-3, 0}, {24e-3, 12e-3}, {kHole_m, 12e-3}}, kShaftFlats);
+  const Mesh ring =
+      test::lathe({{kRingHole_m, 0}, {24e-3, 0}, {24e-3, 12e-3}, {kRingHole_m, 12e-3}}, kShaftFlats);
   Scene scene;
   scene.file = scene.name = "stepped_shaft";
   scene.parts = {scenePart("shaft", shaft, Vec3::Zero(), true), scenePart("ring", ring, Vec3::Zero(), false)};
