@@ -25,14 +25,20 @@ std::string sizesOf(const TightHole& hole) {
   return inMillimetres(2 * hole.shaft_m) + " in a hole of " + inMillimetres(2 * hole.hole_m);
 }
 
+/// Whether the hole is as much smaller than its shaft as the minor diameter of a thread: of a size of ISO
+/// 262, or of any size.
+bool isOfThread(const TightHole& hole, bool is_any_size) {
+  constexpr double kLeast = 0.05, kMost = 0.25;
+  const double share = 1 - hole.hole_m / hole.shaft_m;
+  return !metricThreadIn(2 * hole.shaft_m, 2 * hole.hole_m).empty() ||
+         (is_any_size && share > kLeast && share < kMost);
+}
+
 /// Whether a shaft of the other holes is larger than its hole without being a thread in it.
 bool hasOtherOverlap(const std::vector<TightHole>& holes, bool is_any_size) {
-  constexpr double kRounding_m = 5e-6, kLeast = 0.05, kMost = 0.25;
+  constexpr double kRounding_m = 5e-6;
   return std::ranges::any_of(holes, [&](const TightHole& hole) {
-    const double share = 1 - hole.hole_m / hole.shaft_m;
-    return hole.shaft_m - hole.hole_m > kRounding_m &&
-           metricThreadIn(2 * hole.shaft_m, 2 * hole.hole_m).empty() &&
-           !(is_any_size && share > kLeast && share < kMost);
+    return hole.shaft_m - hole.hole_m > kRounding_m && !isOfThread(hole, is_any_size);
   });
 }
 
@@ -85,13 +91,17 @@ KnownOverlap drawnThread(const KnownPart& a, const KnownPart& b, bool is_declare
                        metricThreadIn(2 * thread->shaft_m, 2 * thread->hole_m) +
                        ", but the parts overlap elsewhere too"};
     }
-    if (holes.empty()) continue;
+    if (std::ranges::none_of(holes, [&](const TightHole& hole) { return isOfThread(hole, is_declared); }))
+      continue;
     // The smallest hole: a shaft that is thinner than it is thinner than all others.
     const TightHole& hole = *std::ranges::min_element(holes, {}, &TightHole::hole_m);
     const std::string name = metricThreadIn(2 * hole.shaft_m, 2 * hole.hole_m);
     const std::string size = name.empty() ? inMillimetres(2 * hole.shaft_m) : name;
-    const bool is_fastener = isKind(*inner, {FastenerKind::Screw, FastenerKind::Stud, FastenerKind::Pin}) ||
-                             isKind(*outer, {FastenerKind::Nut});
+    // A head without a drive may be that of a screw that is drawn plain. A pin without a head is no screw: 6
+    // mm in a hole of 5 mm has the sizes of M6, and may as well be a mistake.
+    const bool is_fastener =
+        isKind(*inner, {FastenerKind::Screw, FastenerKind::Stud, FastenerKind::HeadedPin}) ||
+        isKind(*outer, {FastenerKind::Nut});
     if (!is_fastener && !hole.is_threaded && !is_declared)
       return {.words = sizesOf(hole) + ": the sizes of " + size +
                        ", but neither part has the shape of a screw or nut; a file of rules can declare a "
