@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "files/html.h"
@@ -184,10 +185,11 @@ std::string uncertainWords(const scenes::CheckResult& result) {
               : "; " + scenes::counted(others, "other pair is", "other pairs are") + " uncertain, too");
 }
 
-/// "free if 'bolt' moves by 0.050 mm along +x"; empty: nothing is moved.
-std::string freeWords(const std::vector<scenes::MovedPart>& moved) {
+/// "free if 'bolt' moves by 0.050 mm along +x", the part that moves farthest first; empty: nothing is moved.
+std::string freeWords(std::vector<scenes::MovedPart> moved) {
   constexpr std::size_t kMost = 4;
   if (moved.empty()) return {};
+  std::ranges::stable_sort(moved, std::greater(), &scenes::MovedPart::most_m);
   std::string out = "free if ";
   for (std::size_t i = 0; i < std::min(moved.size(), kMost); ++i)
     out += (i == 0 ? "" : i + 1 == moved.size() ? " and " : ", ") + motionWords(moved[i]);
@@ -202,8 +204,7 @@ std::string assemblyWords(const scenes::CheckResult& result) {
   switch (result.places.verdict) {
     case scenes::Verdict::Blocked:
       return "cannot be assembled with its parts where they are drawn, or within 0.5 mm of there (other "
-             "places "
-             "were not examined): " +
+             "places were not examined): " +
              result.places.reason;
     case scenes::Verdict::NotShown:
       return "whether the parts can be assembled is not shown: " + result.places.reason;
