@@ -2,8 +2,6 @@
 // STEP files with one damaged or unknown entity are read exactly if no geometry is lost, and refused
 // otherwise.
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
@@ -11,16 +9,9 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
-#include <Quantity_Color.hxx>
-#include <STEPCAFControl_Writer.hxx>
-#include <TDataStd_Name.hxx>
-#include <TDocStd_Document.hxx>
-#include <XCAFApp_Application.hxx>
-#include <XCAFDoc_ColorTool.hxx>
-#include <XCAFDoc_DocumentTool.hxx>
-#include <XCAFDoc_ShapeTool.hxx>
 
 #include "cad_faces/damaged_file.h"
+#include "cad_faces/step_rig.h"
 #include "occt/file_faults.h"
 
 namespace vps::scenes {
@@ -30,34 +21,11 @@ namespace {
 class DamagedEntities : public DamagedFile {
  protected:
   std::string written(bool has_cone, bool has_pin = true) {
-    Handle(TDocStd_Document) document;
-    XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
-    const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
-    const TDF_Label rig = shapes->NewShape();
-    TDataStd_Name::Set(rig, "rig");
-    const auto add = [&](const TopoDS_Shape& shape, const char* name, double x_mm) {
-      const TDF_Label part = shapes->AddShape(shape, false);
-      TDataStd_Name::Set(part, name);
-      gp_Trsf shift;
-      shift.SetTranslation(gp_Vec(x_mm, 0, 0));
-      TDataStd_Name::Set(shapes->AddComponent(rig, part, TopLoc_Location(shift)), name);
-      return part;
-    };
-    const TDF_Label box = add(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), "box", 100);
-    XCAFDoc_DocumentTool::ColorTool(document->Main())
-        ->SetColor(box, Quantity_Color(1, 0, 0, Quantity_TOC_RGB), XCAFDoc_ColorSurf);
-    if (has_pin) add(BRepPrimAPI_MakeCylinder(5, 20).Shape(), "pin", 0);
-    if (has_cone) add(BRepPrimAPI_MakeCone(5, 2, 20).Shape(), "cone", 200);
-    shapes->UpdateAssemblies();
-    STEPCAFControl_Writer writer;
-    writer.SetColorMode(true);
-    writer.SetNameMode(true);
-    EXPECT_TRUE(writer.Transfer(document, STEPControl_AsIs));
-    const std::string file = (folder_.path() / "sound.step").string();
-    EXPECT_EQ(writer.Write(file.c_str()), IFSelect_RetDone);
-    XCAFApp_Application::GetApplication()->Close(document);
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+    StepRig rig;
+    rig.add(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), "box", 100, Quantity_Color(1, 0, 0, Quantity_TOC_RGB));
+    if (has_pin) rig.add(BRepPrimAPI_MakeCylinder(5, 20).Shape(), "pin", 0);
+    if (has_cone) rig.add(BRepPrimAPI_MakeCone(5, 2, 20).Shape(), "cone", 200);
+    return rig.written((folder_.path() / "sound.step").string());
   }
 
   std::vector<Truth> truthOf(const std::string& text) {

@@ -6,19 +6,12 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
 #include <Interface_Static.hxx>
-#include <Quantity_Color.hxx>
-#include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Writer.hxx>
-#include <TDataStd_Name.hxx>
-#include <TDocStd_Document.hxx>
-#include <XCAFApp_Application.hxx>
-#include <XCAFDoc_ColorTool.hxx>
-#include <XCAFDoc_DocumentTool.hxx>
-#include <XCAFDoc_ShapeTool.hxx>
 #include <algorithm>
 #include <cctype>
 #include <sstream>
 
+#include "cad_faces/step_rig.h"
 #include "support/odd_files.h"
 
 namespace vps::scenes::odd {
@@ -50,31 +43,13 @@ class OddStep : public OddFiles {
  protected:
   /// The assembly "rig" of the two parts, in millimetres.
   std::string rig() {
-    Handle(TDocStd_Document) document;
-    XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
-    const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
-    const TDF_Label rig = shapes->NewShape();
-    TDataStd_Name::Set(rig, "rig");
-    const auto add = [&](const TopoDS_Shape& shape, const char* name, double x_mm, const Color& color) {
-      const TDF_Label part = shapes->AddShape(shape, false);
-      TDataStd_Name::Set(part, name);
-      gp_Trsf shift;
-      shift.SetTranslation(gp_Vec(x_mm, 0, 0));
-      TDataStd_Name::Set(shapes->AddComponent(rig, part, TopLoc_Location(shift)), name);
-      XCAFDoc_DocumentTool::ColorTool(document->Main())
-          ->SetColor(part, Quantity_Color(color[0], color[1], color[2], Quantity_TOC_RGB), XCAFDoc_ColorSurf);
+    const auto inColor = [](const Color& color) {
+      return Quantity_Color(color[0], color[1], color[2], Quantity_TOC_RGB);
     };
-    add(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), "block", 0, kRed);
-    add(ellShape(), "ell", 100, {0.25F, 0.5F, 0.75F});
-    shapes->UpdateAssemblies();
-    STEPCAFControl_Writer writer;
-    writer.SetColorMode(true);
-    writer.SetNameMode(true);
-    EXPECT_TRUE(writer.Transfer(document, STEPControl_AsIs));
-    const std::string file = (folder_.path() / "sound.step").string();
-    EXPECT_EQ(writer.Write(file.c_str()), IFSelect_RetDone);
-    XCAFApp_Application::GetApplication()->Close(document);
-    return oneEntityALine(vps::test::bytesOf(file));
+    StepRig rig;
+    rig.add(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), "block", 0, inColor(kRed));
+    rig.add(ellShape(), "ell", 100, inColor({0.25F, 0.5F, 0.75F}));
+    return oneEntityALine(rig.written((folder_.path() / "sound.step").string()));
   }
   /// The block alone, in another representation.
   std::string block(STEPControl_StepModelType type) {

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
 
 #include "fits/iso_sizes.h"
 #include "known/known_overlap.h"
+#include "vps_scenes/scene/number_words.h"
 
 namespace vps::scenes {
 
@@ -15,14 +15,8 @@ bool isKind(const KnownPart& of, std::initializer_list<FastenerKind> kinds) {
   return of.shape && std::ranges::find(kinds, of.shape->kind) != kinds.end();
 }
 
-std::string inMillimetres(double m) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f mm", 1e3 * m);
-  return text;
-}
-
 std::string sizesOf(const TightHole& hole) {
-  return inMillimetres(2 * hole.shaft_m) + " in a hole of " + inMillimetres(2 * hole.hole_m);
+  return lengthInWords(2 * hole.shaft_m, 2) + " in a hole of " + lengthInWords(2 * hole.hole_m, 2);
 }
 
 /// Whether the hole is as much smaller than its shaft as the minor diameter of a thread: of a size of ISO
@@ -81,22 +75,22 @@ std::optional<TightHole> pressedInto(const KnownPart& inner, const KnownPart& ou
 
 KnownOverlap drawnThread(const KnownPart& a, const KnownPart& b, bool is_declared) {
   for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-    const std::vector<TightHole> holes = tightHoles(*inner, *outer);
+    std::vector<TightHole> holes = tightHoles(*inner, *outer);
     if (hasOtherOverlap(holes, is_declared)) {
-      const auto thread = std::ranges::find_if(holes, [](const TightHole& hole) {
-        return !metricThreadIn(2 * hole.shaft_m, 2 * hole.hole_m).empty();
-      });
+      const auto thread =
+          std::ranges::find_if(holes, [](const TightHole& hole) { return isOfThread(hole, false); });
       if (thread == holes.end()) continue;
       return {.words = sizesOf(*thread) + ": the sizes of " +
                        metricThreadIn(2 * thread->shaft_m, 2 * thread->hole_m) +
                        ", but the parts overlap elsewhere too"};
     }
-    if (std::ranges::none_of(holes, [&](const TightHole& hole) { return isOfThread(hole, is_declared); }))
-      continue;
+    // All other holes are as wide as their shafts, but for rounding.
+    std::erase_if(holes, [&](const TightHole& hole) { return !isOfThread(hole, is_declared); });
+    if (holes.empty()) continue;
     // The smallest hole: a shaft that is thinner than it is thinner than all others.
     const TightHole& hole = *std::ranges::min_element(holes, {}, &TightHole::hole_m);
     const std::string name = metricThreadIn(2 * hole.shaft_m, 2 * hole.hole_m);
-    const std::string size = name.empty() ? inMillimetres(2 * hole.shaft_m) : name;
+    const std::string size = name.empty() ? lengthInWords(2 * hole.shaft_m, 2) : name;
     // A head without a drive may be that of a screw that is drawn plain. A pin without a head is no screw: 6
     // mm in a hole of 5 mm has the sizes of M6, and may as well be a mistake.
     const bool is_fastener =
@@ -125,7 +119,7 @@ KnownOverlap formedHole(const KnownPart& a, const KnownPart& b, std::optional<Ov
   constexpr double kMostInsert = 0.15, kMostTapping = 0.35;  // assumed: share of the outer diameter
   const auto taken = [&](const char* as, const TightHole& hole) {
     return (declared ? std::string("declared as ") : std::string("taken, by name and shape, for ")) + as +
-           " in a smaller hole of " + inMillimetres(2 * hole.hole_m);
+           " in a smaller hole of " + lengthInWords(2 * hole.hole_m, 2);
   };
   for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
     if (declared ? declared == OverlapWish::Insert : isInsert(*inner))

@@ -36,7 +36,7 @@ struct KnownClash {
 class Judge {
  public:
   Judge(const std::vector<PlacedSurface>& parts, const FacesOfParts& faces, const OverlapWishes& wishes)
-      : parts_(parts), faces_(faces), wishes_(wishes), torus_(parts.size()) {}
+      : parts_(parts), faces_(faces), wishes_(wishes) {}
 
   void judge(const Progress& progress, CheckResult& result) {
     gather(result);
@@ -79,22 +79,20 @@ class Judge {
       for (const std::size_t part : {clash.a, clash.b})
         if (shapes_.try_emplace(parts_[part].surface.get()).second)
           surfaces.push_back(parts_[part].surface.get());
-    std::vector<std::optional<Torus>> torus(surfaces.size());
-    std::vector<std::optional<FastenerShape>> shape(surfaces.size());
     forEachOnCores(surfaces.size(), progress, "finding fasteners", [&](std::size_t i) {
-      shape[i] = fastenerShape(*surfaces[i], faces_.at(surfaces[i]));
-      torus[i] = torusOf(*surfaces[i]);
+      Shape& shape = shapes_.at(surfaces[i]);
+      shape.fastener = fastenerShape(*surfaces[i], faces_.at(surfaces[i]));
+      shape.torus = torusOf(*surfaces[i]);
     });
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-      shapes_[surfaces[i]] = shape[i];
-      for (std::size_t part = 0; part < parts_.size(); ++part)
-        if (parts_[part].surface.get() == surfaces[i]) torus_[part] = torus[i];
-    }
+  }
+
+  [[nodiscard]] const std::optional<Torus>& torusOfPart(std::size_t part) const {
+    return shapes_.at(parts_[part].surface.get()).torus;
   }
 
   [[nodiscard]] KnownPart knownPart(std::size_t part) const {
     const PartSurface* surface = parts_[part].surface.get();
-    return {parts_[part], faces_.at(surface), shapes_.at(surface)};
+    return {parts_[part], faces_.at(surface), shapes_.at(surface).fastener};
   }
 
   /// What the pair is as a thread, insert or self-tapping screw. The first explanation is kept.
@@ -114,13 +112,13 @@ class Judge {
 
   [[nodiscard]] bool isSeal(const KnownClash& clash) const {
     if (clash.rule) return clash.rule->kind == OverlapWish::Seal;
-    return torus_[clash.a].has_value() != torus_[clash.b].has_value();
+    return torusOfPart(clash.a).has_value() != torusOfPart(clash.b).has_value();
   }
 
   /// The seal of a pair: its torus, or for a declared one without a torus the part of the smaller volume.
   [[nodiscard]] std::size_t sealOf(const KnownClash& clash) const {
-    if (torus_[clash.a].has_value() != torus_[clash.b].has_value())
-      return torus_[clash.a] ? clash.a : clash.b;
+    const bool is_a = torusOfPart(clash.a).has_value();
+    if (is_a != torusOfPart(clash.b).has_value()) return is_a ? clash.a : clash.b;
     const auto volumeOf = [&](std::size_t part) {
       return std::abs(massProperties(parts_[part].surface->mesh()).volume_m3);
     };
@@ -134,7 +132,7 @@ class Judge {
       if (isSeal(clash)) of_seal[sealOf(clash)].push_back(&clash);
     for (const auto& [seal, clashes] : of_seal) {
       pollStop();
-      if (torus_[seal])
+      if (torusOfPart(seal))
         judgeTorus(seal, clashes);
       else
         for (KnownClash* clash : clashes) judgeByThickness(seal, *clash);
@@ -144,7 +142,7 @@ class Judge {
   void judgeTorus(std::size_t seal, const std::vector<KnownClash*>& clashes) {
     std::vector<Squash> each;
     for (const KnownClash* clash : clashes)
-      each.emplace_back(parts_[seal], *torus_[seal], parts_[clash->a == seal ? clash->b : clash->a]);
+      each.emplace_back(parts_[seal], *torusOfPart(seal), parts_[clash->a == seal ? clash->b : clash->a]);
     Squash all = each.front();
     for (const Squash& one : each) all.add(one);
     for (std::size_t i = 0; i < clashes.size(); ++i) {
@@ -185,8 +183,11 @@ class Judge {
   const std::vector<PlacedSurface>& parts_;
   const FacesOfParts& faces_;
   const OverlapWishes& wishes_;
-  std::vector<std::optional<Torus>> torus_;  ///< by part
-  std::map<const PartSurface*, std::optional<FastenerShape>> shapes_;
+  struct Shape {
+    std::optional<FastenerShape> fastener;
+    std::optional<Torus> torus;
+  };
+  std::map<const PartSurface*, Shape> shapes_;  ///< of all parts that clash
   std::vector<KnownClash> clashes_;
 };
 

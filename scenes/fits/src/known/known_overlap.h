@@ -52,9 +52,9 @@ std::vector<TightHole> holesAround(const KnownPart& inner, const KnownPart& oute
 bool isOnlyInHole(const PlacedSurface& inner, const PlacedSurface& outer, const TightHole& hole);
 
 /// A thread that is drawn as a cylinder in at least one of the parts: the shaft has the nominal diameter of a
-/// thread of ISO 262 and the hole its minor diameter or that of its drill; one part is a screw, a stud, a pin
-/// or a nut by its shape; and the parts overlap nowhere else. A declared thread may have any shape, and any
-/// size whose hole is smaller by 5 to 25 % of the diameter, as from M64x4 to M1.
+/// thread of ISO 262 and the hole its minor diameter or that of its drill; one part is a screw, a headed
+/// pin, a stud or a nut by its shape; and the parts overlap nowhere else. A declared thread may have any
+/// shape, and any size whose hole is smaller by 5 to 25 % of the diameter, as from M64x4 to M1.
 KnownOverlap drawnThread(const KnownPart& a, const KnownPart& b, bool is_declared);
 
 /// Two modelled threads: out of phase (a turn about the axis, found from the phases of the flanks, is
